@@ -1,0 +1,56 @@
+/* portable.h: the little that lets library headers compile as OpenCL C 1.2 and as C11.
+ *
+ * Arithmetic is exact by contract: no contraction, no library transcendental, so that host and every
+ * device compute the same bits. Include this first in every kernel translation unit. */
+#ifndef CDL_PORTABLE_H
+#define CDL_PORTABLE_H
+
+#ifdef __OPENCL_VERSION__
+
+#pragma OPENCL FP_CONTRACT OFF
+
+/* always_inline: a plain inline function stays a call in PoCL and stops its vectoriser. */
+#define CDL_INLINE static inline __attribute__((always_inline))
+#define CDL_GLOBAL __global
+#define CDL_CONSTANT __constant
+
+#else
+
+#include <tgmath.h>
+#include <stdint.h>
+#include <string.h>
+
+#define CDL_INLINE static inline __attribute__((always_inline, unused))
+#define CDL_GLOBAL
+#define CDL_CONSTANT const
+
+typedef uint32_t uint;
+
+CDL_INLINE uint as_uint(float x) {
+  uint u;
+  memcpy(&u, &x, 4);
+  return u;
+}
+
+CDL_INLINE int as_int(float x) {
+  int i;
+  memcpy(&i, &x, 4);
+  return i;
+}
+
+CDL_INLINE float as_float(uint u) {
+  float x;
+  memcpy(&x, &u, 4);
+  return x;
+}
+
+#endif
+
+#define CDL_PI 3.14159265358979323846f
+#define CDL_INV_PI 0.31830988618379067154f
+#define CDL_INV_2PI 0.15915494309189533577f
+#define CDL_INV_4PI 0.07957747154594766788f
+#define CDL_INFINITY as_float(0x7f800000u)
+#define CDL_ONE_MINUS_EPSILON 0.99999994f /* the float below 1 */
+
+#endif
