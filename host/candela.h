@@ -27,6 +27,9 @@ typedef enum cdl_Status {
   CDL_INTERRUPTED = 130 /* stopped on request; what was finished is kept */
 } cdl_Status;
 
+/* A loaded scene. */
+typedef struct cdl_Scene cdl_Scene;
+
 typedef enum cdl_LogLevel { CDL_LOG_ERROR, CDL_LOG_WARNING, CDL_LOG_NOTE } cdl_LogLevel;
 
 /* Where messages go. `write` gets one line without a newline; it may be NULL (silence) and may be

@@ -1,0 +1,189 @@
+/* scene.h: the host's model of a scene, as loaded and before anything is packed for a device.
+ *
+ * Units and conventions: metres, seconds, right-handed, +Y up; linear RGB with Rec. 709 primaries;
+ * textures are kept as stored and decoded where they are looked up. Matrices are 3x4, row-major, the
+ * last column the translation. Indices refer to the arrays of cdl_Scene; CDL_NONE means none.
+ * Every array belongs to the scene and is freed by scene_free(). */
+#ifndef CANDELA_SCENE_SCENE_H
+#define CANDELA_SCENE_SCENE_H
+
+#include <stdint.h>
+
+#include "candela.h"
+#include "image/image.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CDL_NONE 0xffffffffu
+
+/* How texture coordinates outside [0,1] are brought back. */
+typedef enum cdl_Wrap { CDL_WRAP_REPEAT, CDL_WRAP_MIRROR, CDL_WRAP_CLAMP } cdl_Wrap;
+
+/* An image with a sampler. Two textures may share an image. */
+typedef struct cdl_SceneTexture {
+  uint32_t image;
+  cdl_Wrap wrap_s, wrap_t;
+  int nearest; /* nearest texel instead of bilinear */
+} cdl_SceneTexture;
+
+/* glTF's textureInfo: which texture, which coordinates, and KHR_texture_transform as a 2x3 matrix,
+ * row-major: (u', v') = M (u, v, 1). */
+typedef struct cdl_TextureRef {
+  uint32_t texture; /* CDL_NONE: no texture, the factor alone */
+  uint32_t uv_set;  /* 0 or 1 */
+  float transform[6];
+} cdl_TextureRef;
+
+typedef enum cdl_MaterialModel {
+  CDL_MODEL_GLTF, /* metallic-roughness, glTF 2.0 appendix B */
+  CDL_MODEL_UNLIT,
+  CDL_MODEL_DIFFUSE,
+  CDL_MODEL_MIRROR,
+  CDL_MODEL_CONDUCTOR,
+  CDL_MODEL_DIELECTRIC,
+  CDL_MODEL_RETROREFLECTOR,
+  CDL_MODEL_INTERFACE
+} cdl_MaterialModel;
+
+typedef enum cdl_AlphaMode { CDL_ALPHA_OPAQUE, CDL_ALPHA_MASK, CDL_ALPHA_BLEND } cdl_AlphaMode;
+typedef enum cdl_Distribution { CDL_GGX, CDL_BECKMANN } cdl_Distribution;
+typedef enum cdl_Masking { CDL_MASKING_CORRELATED, CDL_MASKING_SEPARABLE } cdl_Masking;
+
+typedef struct cdl_SceneMaterial {
+  char *name; /* never NULL, may be empty */
+  cdl_MaterialModel model;
+  int double_sided;
+  cdl_AlphaMode alpha_mode;
+  float alpha_cutoff;
+  float base[4];     /* base colour, reflectance or transmittance, and opacity */
+  float metallic;    /* [0,1] */
+  float roughness;   /* glTF's, [0,1]; alpha is its square (gltf model only) */
+  float alpha[2];    /* microfacet alpha along tangent and bitangent (CDL models) */
+  cdl_Distribution distribution;
+  cdl_Masking masking;
+  float ior;         /* inside over outside; >= 1 for glTF, > 0 for CDL models; 0 means infinite */
+  float eta[3], k[3]; /* complex index of a conductor, per channel */
+  int thin;
+  float normal_scale;
+  float emission[3]; /* factor x strength, radiance */
+  uint32_t medium;   /* what fills a closed surface of this material: index, or CDL_NONE: nothing */
+  float transmission; /* KHR_materials_transmission factor, [0,1] */
+  cdl_TextureRef base_texture, metallic_roughness_texture, alpha_texture, normal_texture,
+      emission_texture, transmission_texture;
+} cdl_SceneMaterial;
+
+/* One glTF primitive: indexed triangles of one material. Absent attributes are NULL; normals that the
+ * file leaves out are absent (flat shading, as glTF prescribes). */
+typedef struct cdl_SceneMesh {
+  uint32_t vertex_count, triangle_count;
+  uint32_t material; /* index; the default material of glTF has an entry of its own if used */
+  float *positions;  /* 3 a vertex */
+  float *normals;    /* 3 a vertex, unit or zero */
+  float *tangents;   /* 4 a vertex: unit tangent, handedness +-1 */
+  float *uv[2];      /* 2 a vertex */
+  float *colors;     /* 4 a vertex, linear RGB and opacity */
+  uint32_t *indices; /* 3 a triangle, each < vertex_count */
+  char *name;
+} cdl_SceneMesh;
+
+/* A mesh placed in the world. `object` numbers the glTF node (or node and GPU instance). */
+typedef struct cdl_SceneInstance {
+  uint32_t mesh, object;
+  float to_world[12];
+} cdl_SceneInstance;
+
+typedef enum cdl_LightType { CDL_LIGHT_POINT, CDL_LIGHT_SPOT, CDL_LIGHT_DIRECTIONAL } cdl_LightType;
+
+/* KHR_lights_punctual, placed. Light leaves along `direction`. */
+typedef struct cdl_SceneLight {
+  cdl_LightType type;
+  float position[3], direction[3]; /* direction is unit */
+  float intensity[3];              /* W/sr (point, spot) or W/m2 (directional), colour included */
+  float range;                     /* m; 0: unlimited */
+  float inner_cone, outer_cone;    /* radians, spot only */
+  char *name;
+} cdl_SceneLight;
+
+typedef struct cdl_SceneCamera {
+  char *name;
+  int orthographic;
+  float to_world[12]; /* looks along -Z, +Y up */
+  float yfov;         /* radians */
+  float xmag, ymag;   /* half width and height, m, orthographic only */
+  float aspect;       /* width over height; 0: free */
+  float aperture_radius, focus_distance; /* m; radius 0: pinhole */
+  uint32_t blades;                       /* 0: round */
+  float shutter[2];                      /* s */
+} cdl_SceneCamera;
+
+typedef enum cdl_PhaseType { CDL_PHASE_ISOTROPIC, CDL_PHASE_HG } cdl_PhaseType;
+
+typedef struct cdl_SceneMedium {
+  float absorption[3], scattering[3]; /* 1/m, scale included */
+  float emission[3];                  /* radiance per metre */
+  cdl_PhaseType phase;
+  float g;
+} cdl_SceneMedium;
+
+typedef struct cdl_SceneEnvironment {
+  int present;       /* 0: none given */
+  uint32_t image;    /* CDL_NONE: constant radiance */
+  float radiance[3]; /* of the constant one; 1 otherwise */
+  float strength;
+  float rotation; /* degrees about +Y, counter-clockwise seen from above */
+} cdl_SceneEnvironment;
+
+typedef enum cdl_ExtensionState {
+  CDL_EXTENSION_USED,
+  CDL_EXTENSION_IGNORED, /* has no effect on light, or none that this renderer shows */
+  CDL_EXTENSION_UNSUPPORTED
+} cdl_ExtensionState;
+
+typedef struct cdl_SceneExtension {
+  char *name;
+  cdl_ExtensionState state;
+} cdl_SceneExtension;
+
+struct cdl_Scene {
+  char *path;
+  cdl_SceneMesh *meshes;
+  cdl_SceneInstance *instances;
+  cdl_SceneMaterial *materials;
+  cdl_SceneTexture *textures;
+  cdl_Image **images;
+  char **image_names;
+  cdl_SceneLight *lights;
+  cdl_SceneCamera *cameras; /* at least one: a framing camera where the file has none */
+  cdl_SceneMedium *media;
+  cdl_SceneExtension *extensions;
+  char **object_names;
+  uint32_t mesh_count, instance_count, material_count, texture_count, image_count, light_count,
+      camera_count, medium_count, extension_count, object_count;
+  uint32_t medium; /* what fills the rest of the scene: index or CDL_NONE */
+  cdl_SceneEnvironment environment;
+  float bounds[2][3]; /* of all instances in the world; min > max when there are none */
+  char sha256[65];    /* of the file and all that it refers to, hexadecimal */
+};
+
+typedef struct cdl_SceneOptions {
+  double time;        /* animation time, s */
+} cdl_SceneOptions;
+
+/* Loads a .gltf or .glb with all it refers to. Files outside the scene's folder are refused. A damaged
+ * file is CDL_BAD_INPUT with one line that names file, JSON pointer and the Khronos validator's code;
+ * what is only odd is noted. *scene is set on success alone; free it with scene_free(). */
+cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptions *options,
+                      struct cdl_Scene **scene);
+
+/* Frees a scene and all it holds; NULL is nothing. */
+void scene_free(struct cdl_Scene *scene);
+
+/* The framing camera for a scene's bounds: from front-right and above, all in view. */
+void scene_frame_camera(const float bounds[2][3], cdl_SceneCamera *camera);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
