@@ -9,6 +9,8 @@
 
 #include <stdint.h>
 
+#include "abi/material.h"
+#include "abi/texture.h"
 #include "candela.h"
 #include "image/image.h"
 
@@ -16,15 +18,10 @@
 extern "C" {
 #endif
 
-#define CDL_NONE 0xffffffffu
-
-/* How texture coordinates outside [0,1] are brought back. */
-typedef enum cdl_Wrap { CDL_WRAP_REPEAT, CDL_WRAP_MIRROR, CDL_WRAP_CLAMP } cdl_Wrap;
-
 /* An image with a sampler. Two textures may share an image. */
 typedef struct cdl_SceneTexture {
   uint32_t image;
-  cdl_Wrap wrap_s, wrap_t;
+  uint32_t wrap_s, wrap_t; /* CDL_WRAP_* */
   int nearest; /* nearest texel instead of bilinear */
 } cdl_SceneTexture;
 
@@ -36,24 +33,13 @@ typedef struct cdl_TextureRef {
   float transform[6];
 } cdl_TextureRef;
 
-typedef enum cdl_MaterialModel {
-  CDL_MODEL_GLTF, /* metallic-roughness, glTF 2.0 appendix B */
-  CDL_MODEL_UNLIT,
-  CDL_MODEL_DIFFUSE,
-  CDL_MODEL_MIRROR,
-  CDL_MODEL_CONDUCTOR,
-  CDL_MODEL_DIELECTRIC,
-  CDL_MODEL_RETROREFLECTOR,
-  CDL_MODEL_INTERFACE
-} cdl_MaterialModel;
-
 typedef enum cdl_AlphaMode { CDL_ALPHA_OPAQUE, CDL_ALPHA_MASK, CDL_ALPHA_BLEND } cdl_AlphaMode;
 typedef enum cdl_Distribution { CDL_GGX, CDL_BECKMANN } cdl_Distribution;
 typedef enum cdl_Masking { CDL_MASKING_CORRELATED, CDL_MASKING_SEPARABLE } cdl_Masking;
 
 typedef struct cdl_SceneMaterial {
   char *name; /* never NULL, may be empty */
-  cdl_MaterialModel model;
+  uint32_t model; /* CDL_MODEL_* */
   int double_sided;
   cdl_AlphaMode alpha_mode;
   float alpha_cutoff;
@@ -94,11 +80,15 @@ typedef struct cdl_SceneInstance {
   float to_world[12];
 } cdl_SceneInstance;
 
-typedef enum cdl_LightType { CDL_LIGHT_POINT, CDL_LIGHT_SPOT, CDL_LIGHT_DIRECTIONAL } cdl_LightType;
+typedef enum cdl_PunctualType {
+  CDL_PUNCTUAL_POINT,
+  CDL_PUNCTUAL_SPOT,
+  CDL_PUNCTUAL_DIRECTIONAL
+} cdl_PunctualType;
 
 /* KHR_lights_punctual, placed. Light leaves along `direction`. */
 typedef struct cdl_SceneLight {
-  cdl_LightType type;
+  cdl_PunctualType type;
   float position[3], direction[3]; /* direction is unit */
   float intensity[3];              /* W/sr (point, spot) or W/m2 (directional), colour included */
   float range;                     /* m; 0: unlimited */

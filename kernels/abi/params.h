@@ -1,0 +1,62 @@
+/* params.h: what a render keeps constant (cdl_Params) and what changes from wave to wave (cdl_Wave). */
+#ifndef CDL_ABI_PARAMS_H
+#define CDL_ABI_PARAMS_H
+
+#include "abi/types.h"
+
+#define CDL_BLOCK_SAMPLES 16u /* samples of a pixel that make one partial film */
+
+typedef struct cdl_CameraParams {
+  float to_world[12]; /* 3x4, row-major; looks along -Z */
+  float scale[2];     /* half width and height of the image: at distance 1, or in m if orthographic */
+  float lens_radius;  /* m; 0: pinhole */
+  float focus_distance;
+  uint orthographic;
+  uint blades; /* of the aperture; 0: round */
+  uint pad[2];
+} cdl_CameraParams;
+CDL_ABI_SIZE(cdl_CameraParams, 80);
+
+typedef struct cdl_EnvironmentParams {
+  uint present;  /* 0: black */
+  uint first;    /* word of its first texel in the environment's buffer; RGB floats, 4 words each */
+  uint width, height; /* 1 x 1 for a constant one */
+  float scale[3];     /* strength */
+  float rotation_cos, rotation_sin; /* about +Y, counter-clockwise seen from above */
+  float select_pdf;   /* probability that light sampling chooses it */
+  uint pad[2];
+} cdl_EnvironmentParams;
+CDL_ABI_SIZE(cdl_EnvironmentParams, 48);
+
+typedef struct cdl_Params {
+  cdl_CameraParams camera;
+  cdl_EnvironmentParams environment;
+  uint width, height;   /* of the full image, pixels */
+  uint crop_x, crop_y;  /* what is rendered of it */
+  uint crop_width, crop_height;
+  uint seed;
+  uint max_depth;       /* scattering events after the camera ray */
+  uint roulette_depth;  /* events before Russian roulette begins */
+  uint light_count;
+  uint top_root;        /* of the bounding volume hierarchy */
+  uint scene_medium;    /* index into the media */
+  float scene_center[3]; /* sphere around the world's bounds */
+  float scene_radius;
+  uint pass_limit;      /* surfaces that a path may cross without scattering */
+  uint pad[3];
+} cdl_Params;
+CDL_ABI_SIZE(cdl_Params, 208);
+
+/* A wave: `pixel_count` pixels of the crop, row by row from `first_pixel`, and `sample_count` samples of
+ * each from `first_sample`. Path slot = sample in wave x pixel_count + pixel in wave. */
+typedef struct cdl_Wave {
+  uint first_pixel, pixel_count;
+  uint first_sample, sample_count;
+  uint path_count; /* slots in use */
+  uint stride;     /* distance between two fields of the path state, in words */
+  uint slots;      /* distance between two fields indexed by slot, in words */
+  uint pad;
+} cdl_Wave;
+CDL_ABI_SIZE(cdl_Wave, 32);
+
+#endif
