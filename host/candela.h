@@ -13,6 +13,7 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+#pragma GCC visibility push(default)
 
 #define CDL_VERSION "0.1.0"
 
@@ -106,6 +107,7 @@ cdl_Status cdl_session_resume(cdl_Session *session, const char *path);
 
 void cdl_session_free(cdl_Session *session); /* NULL is nothing */
 
+#pragma GCC visibility pop
 #ifdef __cplusplus
 }
 #endif
