@@ -17,10 +17,17 @@
  * child has min = +inf, max = -inf and is never entered. */
 typedef struct cdl_BvhNode {
   float bounds[2][6]; /* of each child: min x y z, max x y z */
-  uint child[2];      /* count 0: a node; else the first triangle (bottom) or the instance (top) */
-  uint count[2];      /* triangles in the leaf, or 1 instance; 0: an inner node */
+  uint child[2];      /* references, see below */
+  uint pad[2];
 } cdl_BvhNode;
 CDL_ABI_SIZE(cdl_BvhNode, 64);
+
+/* A reference to a child: the index of a node; or, with bit 31 set, a leaf: 3 bits of its length less
+ * one, then the index of its first triangle (width 8: group of triangles), or of its instance. */
+#define CDL_BVH_LEAF 0x80000000u
+#define CDL_BVH_LENGTH_SHIFT 28
+#define CDL_BVH_LENGTH_MAX 8u
+#define CDL_BVH_INDEX 0x0fffffffu
 
 /* Width 2: a triangle in leaf order, corners as the mesh orders them. */
 typedef struct cdl_BvhTriangle {
@@ -30,22 +37,17 @@ typedef struct cdl_BvhTriangle {
 } cdl_BvhTriangle;
 CDL_ABI_SIZE(cdl_BvhTriangle, 48);
 
-/* Width 8: structure of arrays. An inner child counts 0; unused children are empty boxes. */
+/* Width 8: structure of arrays. Unused children are empty boxes. */
 typedef struct cdl_BvhNode8 {
-  float bounds[6][8]; /* min x, max x, min y, max y, min z, max z of eight children */
-  uint child[8];      /* a node, the first group of triangles, or an instance; see CDL_BVH8_LEAF */
+  float bounds[6][8]; /* min x y z, max x y z of eight children */
+  uint child[8];      /* references */
   float all[6];       /* box of the node itself: min x y z, max x y z */
   uint pad[2];
 } cdl_BvhNode8;
 CDL_ABI_SIZE(cdl_BvhNode8, 256);
 
-/* child of a cdl_BvhNode8: bit 31 marks a leaf, then 3 bits of groups less one, then the index. */
-#define CDL_BVH8_LEAF 0x80000000u
-#define CDL_BVH8_GROUP_SHIFT 28
-#define CDL_BVH8_INDEX 0x0fffffffu
-
-/* Width 8: four triangles at once. Unused lanes have primitive CDL_NONE and vertices that no ray
- * hits. */
+/* Width 8: four triangles at once. Unused lanes have primitive CDL_NONE and not-a-number vertices,
+ * which no ray hits. */
 typedef struct cdl_BvhTriangle4 {
   float v[9][4]; /* v0.x v0.y v0.z v1.x … v2.z */
   uint primitive[4];

@@ -4,16 +4,18 @@
 
 #include "abi/types.h"
 
-/* Material models; each has a queue and a shading kernel of its own (kernels/bsdf). */
-#define CDL_MODEL_GLTF 0u
-#define CDL_MODEL_UNLIT 1u
-#define CDL_MODEL_DIFFUSE 2u
-#define CDL_MODEL_MIRROR 3u
+/* Material models; each has a queue and a shading kernel of its own (kernels/bsdf). Those with delta
+ * lobes alone come first: no light is sampled for them. */
+#define CDL_MODEL_UNLIT 0u
+#define CDL_MODEL_MIRROR 1u
+#define CDL_MODEL_DIELECTRIC 2u
+#define CDL_MODEL_DIFFUSE 3u
 #define CDL_MODEL_CONDUCTOR 4u
-#define CDL_MODEL_DIELECTRIC 5u
-#define CDL_MODEL_RETROREFLECTOR 6u
-#define CDL_MODEL_INTERFACE 7u
+#define CDL_MODEL_RETROREFLECTOR 5u
+#define CDL_MODEL_GLTF 6u
+#define CDL_MODEL_INTERFACE 7u /* the boundary of a medium; has no queue of its own */
 #define CDL_MODEL_COUNT 8u
+#define CDL_MODEL_FIRST_LIT CDL_MODEL_DIFFUSE
 
 /* cdl_Material.flags */
 #define CDL_MATERIAL_DOUBLE_SIDED 1u

@@ -1,4 +1,4 @@
-/* params.h: what a render keeps constant (cdl_Params) and what changes from wave to wave (cdl_Wave). */
+/* params.h: what a render keeps constant (cdl_Params), and what changes from wave to wave (cdl_Wave). */
 #ifndef CDL_ABI_PARAMS_H
 #define CDL_ABI_PARAMS_H
 
@@ -47,16 +47,17 @@ typedef struct cdl_Params {
 } cdl_Params;
 CDL_ABI_SIZE(cdl_Params, 208);
 
-/* A wave: `pixel_count` pixels of the crop, row by row from `first_pixel`, and `sample_count` samples of
- * each from `first_sample`. Path slot = sample in wave x pixel_count + pixel in wave. */
+/* A wave: a rectangle of pixels, and `sample_count` samples of each from `first_sample`.
+ * Slot of a path = sample in wave x pixels + pixel in wave, row by row. At most 2^20 paths. */
 typedef struct cdl_Wave {
-  uint first_pixel, pixel_count;
+  uint x, y, width, height; /* pixels of the full image */
   uint first_sample, sample_count;
-  uint path_count; /* slots in use */
-  uint stride;     /* distance between two fields of the path state, in words */
-  uint slots;      /* distance between two fields indexed by slot, in words */
-  uint pad;
+  uint path_count;
+  uint stride;     /* words between two fields of a path's state */
+  uint slots;      /* words between two fields that are indexed by slot */
+  uint live;   /* entries of the path state in use, pads included */
+  uint pad[2];
 } cdl_Wave;
-CDL_ABI_SIZE(cdl_Wave, 32);
+CDL_ABI_SIZE(cdl_Wave, 48);
 
 #endif
