@@ -14,7 +14,8 @@ VERSION := $(shell sed -n 's/^.define CDL_VERSION "\(.*\)"/\1/p' host/candela.h)
 .PHONY: deps all demo test bench check soak install clean \
   run-demo run-test run-bench run-check run-soak run-unit format-check lint tests
 
-ifeq ($(filter -j%,$(MAKEFLAGS))$(findstring jobserver,$(MAKEFLAGS)),)
+ifeq ($(MAKELEVEL),0)
+# A -j on the command line wins.
 MAKEFLAGS += -j$(JOBS)
 endif
 
