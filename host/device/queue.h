@@ -33,12 +33,14 @@ cdl_Status device_flush(cdl_Device *device);
 cdl_Status device_finish(cdl_Device *device);
 
 /* One finished launch. `seconds` is START to END of its event; `host_timed` says that the driver's
- * timers are stubs and the host's clock, from enqueue to finish, was used. `first` marks the first
- * launch of a kernel in this session: drivers compile in it. */
+ * timers are stubs and the host's clock, from enqueue to finish, was used. Drivers compile at the
+ * first launch of a kernel, again for its first launch with an offset or with a small range:
+ * `first` marks these, and `compile_seconds` is what they took beyond `seconds`. */
 typedef struct cdl_Launch {
   cdl_KernelId kernel;
   size_t items;
   double seconds;
+  double compile_seconds; /* 0 unless `first` */
   int first;
   int host_timed;
 } cdl_Launch;

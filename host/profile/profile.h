@@ -31,9 +31,15 @@ cdl_Profile *profile_create(const char *const *names, size_t count);
 void profile_free(cdl_Profile *profile);
 void profile_reset(cdl_Profile *profile);
 
-/* Records one launch; `first` as in cdl_Launch. */
-void profile_launch(cdl_Profile *profile, size_t kernel, uint64_t items, double seconds, int first,
-                    int host_timed);
+/* One launch: seconds of execution, and of compilation in it, which is 0 but for first launches. */
+typedef struct cdl_LaunchRecord {
+  size_t kernel;
+  uint64_t items;
+  double seconds, compile_seconds;
+  int first, host_timed; /* as in cdl_Launch of device/queue.h */
+} cdl_LaunchRecord;
+
+void profile_launch(cdl_Profile *profile, const cdl_LaunchRecord *launch);
 void profile_transfer(cdl_Profile *profile, uint64_t bytes, double seconds);
 void profile_compile(cdl_Profile *profile, double seconds);
 
