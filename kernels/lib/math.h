@@ -4,7 +4,8 @@
  * a loop or a table, so that PoCL vectorises what calls them. The polynomials are weighted minimax
  * fits made for this file, with coefficients rounded to float from the lowest degree upward. Errors
  * are against the exact value and hold over the whole stated range, denormal arguments and results
- * included. NaN arguments are outside every contract: they give some value, never a trap. */
+ * included. Some devices flush denormal operands and results of fma, so tiny arguments take selects
+ * that avoid it. NaN arguments are outside every contract: they give some value, never a trap. */
 #ifndef CDL_MATH_H
 #define CDL_MATH_H
 
@@ -26,7 +27,7 @@ CDL_INLINE float math_saturate(float x) { return math_clamp(x, 0.0f, 1.0f); }
 CDL_INLINE float math_sqr(float x) { return x * x; }
 
 /* Exact at both ends: a at t = 0, b at t = 1. */
-CDL_INLINE float math_lerp(float a, float b, float t) { return fma(t, b, fma(-t, a, a)); }
+CDL_INLINE float math_lerp(float a, float b, float t) { return (1.0f - t) * a + t * b; }
 
 /* sqrt, and 0 for negative arguments */
 CDL_INLINE float math_safe_sqrt(float x) { return sqrt(math_max(0.0f, x)); }
@@ -74,14 +75,18 @@ CDL_INLINE void math_rotate_quadrant(int quadrant, float s, float c, float *sine
   *cosine = as_float(as_uint(b) ^ ((uint)((quadrant + 1) & 2) << 30));
 }
 
+/* Where odd functions with slope 1 are their own argument, and fma is still far from denormals */
+#define MATH_TINY 7.8886091e-31f /* 2^-100 */
+
 /* Sine and cosine of 2 pi turns, |turns| <= 2^20 (meaningless outside); 2 ulp. The reduction is
  * exact, so multiples of a quarter turn give exactly 0 and +-1. */
 CDL_INLINE void math_sincos_2pi(float turns, float *sine, float *cosine) {
   int quadrant = math_round_int(4.0f * turns);
-  float r = fma(-0.25f, (float)quadrant, turns);
+  float r = turns - 0.25f * (float)quadrant;
   float z = r * r;
   float s = fma(fma(-75.4075546f, z, 81.5926895f), z, -41.3416634f);
-  s = fma(r, 6.28318548f, r * fma(s, z, -1.95191902e-7f));
+  float low = r * fma(s, z, -1.95191902e-7f);
+  s = math_abs(r) < MATH_TINY ? r * 6.28318548f : fma(r, 6.28318548f, low);
   float c = fma(fma(fma(58.6056137f, z, -85.4243317f), z, 64.9391479f), z, -19.7392082f);
   math_rotate_quadrant(quadrant, s, fma(c, z, 1.0f), sine, cosine);
 }
@@ -102,7 +107,7 @@ CDL_INLINE void math_sincos(float x, float *sine, float *cosine) {
   float low = difference_error - fma(q, -1.71512451e-15f, product_error);
   float z = r * r;
   float s = fma(fma(-0.000195182918f, z, 0.00833218917f), z, -0.166666552f);
-  s = r + fma(r * z, s, low);
+  s = math_abs(x) < MATH_TINY ? x : r + fma(r * z, s, low);
   float c = fma(fma(2.44325656e-5f, z, -0.00138873106f), z, 0.0416666456f);
   c = fma(z * z, c, -(r * low));
   math_rotate_quadrant(quadrant, s, fma(z, -0.5f, 1.0f) + c, sine, cosine);
@@ -164,10 +169,12 @@ CDL_INLINE float math_exp(float x) {
 /* e^x - 1 without cancellation near 0, any x; 3 ulp. 1 - exp(-x) is -math_expm1(-x). */
 CDL_INLINE float math_expm1(float x) {
   int n;
-  float p = math_expm1_reduced(math_clamp(x, -30.0f, 89.0f), &n);
+  x = math_clamp(x, -30.0f, 89.0f);
+  float p = math_expm1_reduced(x, &n);
   /* Half the result, because 2^128 is not a float. */
   float t = math_pow2i(n - 1);
   float large = 2.0f * fma(t, p, t - 0.5f);
+  p = math_abs(x) < MATH_TINY ? x : p;
   return n == 0 ? p : large;
 }
 
@@ -228,7 +235,8 @@ CDL_INLINE float math_log1p(float x) {
   int large = e > 25;
   float t = math_pow2i(-(large ? 25 : e));
   float f = large ? m - 1.0f : fma(x, t, t - 1.0f);
-  return math_log_edges(u, math_log_reduced((float)e, f));
+  float value = math_abs(x) < MATH_TINY ? x : math_log_reduced((float)e, f);
+  return math_log_edges(u, value);
 }
 
 /* ---- powers ---- */
@@ -312,7 +320,7 @@ CDL_INLINE float math_atan2(float y, float x) {
   high = left ? 3.14159274f - high : high;
   low = left ? -8.74227766e-8f - low : low;
   float sign = swap != left ? -1.0f : 1.0f;
-  return math_copysign(high + fma(sign, t, fma(sign, p, low)), y);
+  return math_copysign(high + (sign * t + (sign * p + low)), y);
 }
 
 /* asin(s) - s for 0 <= s^2 = z <= 1/4 */
