@@ -1,0 +1,46 @@
+/* retroreflector.h: light goes back where it came from.
+ *
+ * The view is mirrored about the normal before an ordinary microfacet lobe is evaluated or sampled,
+ * which turns the lobe around to wo (the idea of the draft KHR_materials_retroreflection).
+ * Mirroring twice is nothing, and D does not change under half a turn, so the lobe stays
+ * reciprocal. Light passes the coat of index `ior` on its way in and out: (1 - F(wo)) (1 - F(wi)).
+ */
+#ifndef CDL_BSDF_RETROREFLECTOR_H
+#define CDL_BSDF_RETROREFLECTOR_H
+
+#include "bsdf/bsdf.h"
+#include "bsdf/microfacet.h"
+
+CDL_INLINE Microfacets retroreflector_surface(BsdfParams p) {
+  return microfacet_surface(p.alpha_x, p.alpha_y, (p.flags & CDL_MATERIAL_BECKMANN) != 0u,
+                            (p.flags & CDL_MATERIAL_SEPARABLE) != 0u);
+}
+
+/* Reflectance times what passes the coat, by channel. */
+CDL_INLINE vec3 retroreflector_tint(BsdfParams p, vec3 wo, vec3 wi) {
+  float in = 1.0f - fresnel_dielectric(math_saturate(wi.z), p.ior).reflectance;
+  float out = 1.0f - fresnel_dielectric(math_saturate(wo.z), p.ior).reflectance;
+  return v3_scale(p.base, in * out);
+}
+
+CDL_INLINE BsdfValue retroreflector_evaluate(BsdfParams p, vec3 wo, vec3 wi) {
+  Microfacets m = retroreflector_surface(p);
+  MicrofacetLobe lobe = microfacet_evaluate(m, bsdf_mirror(wo), wi);
+  float f_cos = m.smooth ? 0.0f : lobe.f_cos;
+  return bsdf_value(v3_scale(retroreflector_tint(p, wo, wi), f_cos), m.smooth ? 0.0f : lobe.pdf);
+}
+
+CDL_INLINE BsdfSample retroreflector_sample(BsdfParams p, vec3 wo, float u, float v, float w) {
+  (void)w;
+  Microfacets m = retroreflector_surface(p);
+  vec3 mirrored = bsdf_mirror(wo);
+  vec3 rough = fresnel_reflect(mirrored, microfacet_sample_normal(m, mirrored, u, v));
+  vec3 wi = v3_select(m.smooth, wo, rough);
+  MicrofacetLobe lobe = microfacet_evaluate(m, mirrored, wi);
+  vec3 weight = v3_scale(retroreflector_tint(p, wo, wi), m.smooth ? 1.0f : lobe.weight);
+  BsdfSample sample = bsdf_sample(wi, weight, m.smooth ? 0.0f : lobe.pdf);
+  sample.delta = m.smooth;
+  return sample;
+}
+
+#endif
