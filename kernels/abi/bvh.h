@@ -1,9 +1,9 @@
 /* bvh.h: what rays are traced through: nodes, triangles in leaf order and instances.
  *
- * Two levels: the top level's leaves are instances, one each; an instance names the root of its mesh's
- * tree, whose leaves are ranges of triangles. Both levels live in one node buffer. Programs are built
- * for one layout, -DCDL_BVH_WIDTH=2 (the default) or 8; bvh/traverse.h names the layout's types
- * BvhNode and BvhTriangle. */
+ * Two levels: the top level's leaves are instances, one each; an instance names the root of its
+ * mesh's tree, whose leaves are ranges of triangles. Both levels live in one node buffer. Programs
+ * are built for one layout, -DCDL_BVH_WIDTH=2 (the default) or 8; bvh/traverse.h names the layout's
+ * types BvhNode and BvhTriangle. */
 #ifndef CDL_ABI_BVH_H
 #define CDL_ABI_BVH_H
 
@@ -13,8 +13,8 @@
 #define CDL_BVH_STACK 64   /* entries, width 2: the depths of both levels together */
 #define CDL_BVH8_STACK 192 /* entries, width 8 */
 
-/* Width 2: a node holds its children's boxes, so a ray fetches only nodes whose box it hits. An empty
- * child has min = +inf, max = -inf and is never entered. */
+/* Width 2: a node holds its children's boxes, so a ray fetches only nodes whose box it hits. An
+ * empty child has min = +inf, max = -inf and is never entered. */
 typedef struct cdl_BvhNode {
   float bounds[2][6]; /* of each child: min x y z, max x y z */
   uint child[2];      /* references, see below */
@@ -22,8 +22,9 @@ typedef struct cdl_BvhNode {
 } cdl_BvhNode;
 CDL_ABI_SIZE(cdl_BvhNode, 64);
 
-/* A reference to a child: the index of a node; or, with bit 31 set, a leaf: 3 bits of its length less
- * one, then the index of its first triangle (width 8: group of triangles), or of its instance. */
+/* A reference to a child: the index of a node; or, with bit 31 set, a leaf: 3 bits of its length
+ * less one, then the index of its first triangle (width 8: group of triangles), or of its instance.
+ */
 #define CDL_BVH_LEAF 0x80000000u
 #define CDL_BVH_LENGTH_SHIFT 28
 #define CDL_BVH_LENGTH_MAX 8u
@@ -60,7 +61,8 @@ CDL_ABI_SIZE(cdl_BvhTriangle4, 160);
 /* Visibility masks: a ray with mask m sees the instances with (instance.mask & m) != 0. */
 #define CDL_MASK_ALL 0xffffffffu
 
-/* A mesh placed in the world. The host gives instances in its own order and hits name them by it. */
+/* A mesh placed in the world. The host gives instances in its own order and hits name them by it.
+ */
 typedef struct cdl_BvhInstance {
   float to_object[12]; /* 3x4, row-major */
   float to_world[12];

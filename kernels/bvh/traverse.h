@@ -9,10 +9,11 @@
  *
  * A ray hits at 0 < t <= tmax, both sides of every triangle, in units of d, which need not be unit.
  * tmax may be infinite. Origins on a surface are to be offset by the caller. bvh_closest gives the
- * smallest hit in the order of hit_before(); bvh_closest_after the smallest that comes after another
- * hit of the same ray, which goes on through transparent surfaces without losing or repeating one;
- * bvh_occluded is 1 exactly where bvh_closest hits. Rays with an infinite or not-a-number component
- * or without direction hit nothing. The answers do not depend on the tree: bvh/triangle.h says why.
+ * smallest hit in the order of hit_before(); bvh_closest_after the smallest that comes after
+ * another hit of the same ray, which goes on through transparent surfaces without losing or
+ * repeating one; bvh_occluded is 1 exactly where bvh_closest hits. Rays with an infinite or
+ * not-a-number component or without direction hit nothing. The answers do not depend on the tree:
+ * bvh/triangle.h says why.
  */
 #ifndef CDL_BVH_TRAVERSE_H
 #define CDL_BVH_TRAVERSE_H
@@ -29,8 +30,7 @@
 #include "bvh/traverse2.h"
 #endif
 
-CDL_INLINE Hit bvh_closest(CDL_GLOBAL const BvhNode *nodes,
-                           CDL_GLOBAL const BvhTriangle *triangles,
+CDL_INLINE Hit bvh_closest(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
                            CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
                            float tmax, uint mask) {
   return bvh_closest_after(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f));
