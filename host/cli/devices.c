@@ -76,6 +76,7 @@ static const char *type_name(cl_device_type type) {
 }
 
 static const char *verdict(const cdl_DeviceInfo *info) {
+  if (info->exact == CDL_EXACT_NORMALS) return "exact but for denormals";
   return info->exact >= CDL_EXACT_REPORTED ? "exact" : "not exact";
 }
 
@@ -104,7 +105,7 @@ static void print_list(const cdl_DeviceInfo *list, size_t count, int best) {
 }
 
 static json_t *device_json(const cdl_DeviceInfo *d, int is_default) {
-  static const char *const exactness[] = {"no", "unknown", "reported", "measured"};
+  static const char *const exactness[] = {"no", "unknown", "normals", "reported", "measured"};
   json_t *json = json_object();
   json_object_set_new(json, "platform", json_string(d->platform));
   json_object_set_new(json, "platform_version", json_string(d->platform_version));
@@ -125,7 +126,7 @@ static json_t *device_json(const cdl_DeviceInfo *d, int is_default) {
                          json_pack("{s:b, s:b, s:b, s:b, s:s, s:s}", "fma", d->has_fma, "denorms",
                                    d->has_denorms, "correctly_rounded_divide_sqrt",
                                    d->has_correct_divide, "exact", d->exact >= CDL_EXACT_REPORTED,
-                                   "exact_by", exactness[d->exact], "exactness", d->exactness));
+                                   "exact_verdict", exactness[d->exact], "exactness", d->exactness));
   return json;
 }
 

@@ -14,6 +14,7 @@ typedef struct cdl_Device cdl_Device;
 typedef enum cdl_Exactness {
   CDL_EXACT_NO,       /* measured, and results differ; or the device cannot be used */
   CDL_EXACT_UNKNOWN,  /* the driver does not report it and nothing was measured yet */
+  CDL_EXACT_NORMALS,  /* measured: only denormal numbers (below 1.2e-38) come out differently */
   CDL_EXACT_REPORTED, /* the driver reports fma, denormals and correct rounding */
   CDL_EXACT_MEASURED  /* agreed with the host on every value of the arithmetic probe */
 } cdl_Exactness;
