@@ -55,6 +55,10 @@ void cdl_scene_set_background(cdl_Scene *scene, const float radiance[3]);
 
 void cdl_scene_free(cdl_Scene *scene); /* NULL is nothing */
 
+/* What it takes to make this very scene: the SHA-256 of the file, of all it refers to and of what was
+ * replaced, 64 hexadecimal digits; valid as long as the scene. */
+const char *cdl_scene_sha256(const cdl_Scene *scene);
+
 /* An OpenCL device, opened. One session uses it at a time. */
 typedef struct cdl_Device cdl_Device;
 
@@ -63,6 +67,9 @@ typedef struct cdl_Device cdl_Device;
 cdl_Status cdl_device_open(const cdl_Log *log, const char *selector, cdl_Device **device);
 
 void cdl_device_close(cdl_Device *device); /* NULL is nothing */
+
+/* Told of each step of a long preparation, "compiling kernel": `done` of `total`. */
+typedef void (*cdl_Stage)(void *user, const char *what, uint64_t done, uint64_t total);
 
 typedef enum cdl_Schedule { CDL_SCHEDULE_AUTO, CDL_SCHEDULE_WAVEFRONT, CDL_SCHEDULE_FUSED } cdl_Schedule;
 
@@ -83,15 +90,26 @@ typedef struct cdl_Settings {
   uint32_t bvh_width;        /* 2 or 8; 0: what suits the device */
   int fast_math;             /* 1: the device's own functions; gives up equal bits */
   int profile;               /* 1: time every kernel launch */
+  cdl_Stage stage;           /* NULL: nobody wants to know */
+  void *stage_user;
 } cdl_Settings;
 
+/* 1280 pixels wide at the camera's aspect, 64 samples of seed 0, 16 events deep, no limits. */
 void cdl_settings_default(cdl_Settings *settings);
+
+/* Reads a list of AOVs, "albedo,normal" or "all", into the bits of cdl_Settings.aovs. CDL_USAGE names
+ * what there is. */
+cdl_Status cdl_aovs_parse(const cdl_Log *log, const char *list, uint32_t *aovs);
+
+/* The AOVs one by one, from 0 on; NULL after the last. `meaning` may be NULL; both are static. */
+const char *cdl_aov_name(unsigned index, const char **meaning);
 
 /* A render in progress: the scene packed for a device, and the film. Scene and device outlive it. */
 typedef struct cdl_Session cdl_Session;
 
-/* Called between passes and waves: samples done and to do, seconds so far. Returning nonzero stops the
- * render; what was finished is kept. */
+/* Called between passes and waves: samples done and to do, of all pixels together, and seconds so far.
+ * Returning nonzero stops the render; what was finished is kept. The film is in order, so that it may
+ * call cdl_session_save. */
 typedef int (*cdl_Progress)(void *user, uint64_t samples_done, uint64_t samples_total, double seconds);
 
 cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
@@ -101,11 +119,90 @@ cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_
  * stopped it. May be called again to go on. */
 cdl_Status cdl_session_render(cdl_Session *session, cdl_Progress progress, void *user);
 
-/* Writes and reads back a checkpoint: the state of the film, bit for bit, of this very render. */
+/* The picture's size in pixels (of the crop), and the samples that the pixel with the fewest and the
+ * one with the most have so far. Pointers may be NULL. */
+void cdl_session_size(const cdl_Session *session, uint32_t *width, uint32_t *height);
+void cdl_session_samples(const cdl_Session *session, uint32_t *least, uint32_t *most);
+
+/* The mean radiance so far: height x width x 3 floats, linear Rec. 709, rows from the top. */
+cdl_Status cdl_session_pixels(const cdl_Session *session, float *rgb);
+
+/* Writes a checkpoint, all at once: the state of the film, bit for bit, of this very render.
+ * CDL_OUTPUT leaves an older one untouched. */
 cdl_Status cdl_session_save(cdl_Session *session, const char *path);
+
+/* Goes on from a checkpoint. CDL_BAD_INPUT, and nothing changed, if it is damaged or of another scene,
+ * setting or version. */
 cdl_Status cdl_session_resume(cdl_Session *session, const char *path);
 
+/* How pictures of 8 bits are made; floating-point formats stay linear. */
+typedef struct cdl_Display {
+  double exposure;     /* EV: values are multiplied by 2^exposure */
+  const char *tonemap; /* "none", "aces", "agx" or "neutral"; NULL: none */
+} cdl_Display;
+
+/* Finds out before a render whether a picture of this name can be written: CDL_USAGE for an unknown
+ * suffix, CDL_OUTPUT if the folder does not take a file. */
+cdl_Status cdl_output_check(const cdl_Log *log, const char *path);
+
+/* Writes the picture by suffix: .exr (all AOVs as layers, and what was rendered in the header; block
+ * sums too if the session renders a part of the samples), .hdr, .tif, .png, .jpg. `display` may be
+ * NULL. All at once: there is never half a file. */
+cdl_Status cdl_session_write(cdl_Session *session, const char *path, const cdl_Display *display);
+
+/* What was rendered and what it cost, as a JSON text that the caller frees; NULL if memory is short. */
+char *cdl_session_statistics_json(cdl_Session *session);
+
+/* The table of kernels, for people, that the caller frees; NULL without settings.profile. */
+char *cdl_session_profile_text(cdl_Session *session);
+
+/* Keeps every kernel launch of a session from now on, for a trace. The session outlives it. */
+typedef struct cdl_Trace cdl_Trace;
+cdl_Status cdl_trace_start(cdl_Session *session, cdl_Trace **trace);
+
+/* Writes what was kept in the Trace Event Format (JSON) that Perfetto and Chrome show. */
+cdl_Status cdl_trace_write(const cdl_Trace *trace, const char *path);
+void cdl_trace_free(cdl_Trace *trace); /* NULL is nothing */
+
 void cdl_session_free(cdl_Session *session); /* NULL is nothing */
+
+/* A picture put together from parts. */
+typedef struct cdl_Picture cdl_Picture;
+
+/* Reads EXR files that sessions wrote which rendered parts of the samples, in any order, and merges
+ * them into the picture, bit for bit, that one session would have made of all samples. CDL_BAD_INPUT
+ * names a part that does not belong to the first one, overlaps another, or what is missing. */
+cdl_Status cdl_merge(const cdl_Log *log, const char *const *paths, size_t count,
+                     cdl_Picture **picture);
+
+/* As for a session. */
+cdl_Status cdl_picture_write(cdl_Picture *picture, const char *path, const cdl_Display *display);
+char *cdl_picture_statistics_json(const cdl_Picture *picture);
+void cdl_picture_free(cdl_Picture *picture); /* NULL is nothing */
+
+/* Writes a text to a file, all at once. */
+cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text);
+
+/* How far picture A is from the reference B; over the pixels that are finite in both. */
+typedef struct cdl_Difference {
+  int identical;         /* every value has the same bits */
+  uint64_t pixels, finite_pixels;
+  uint64_t nonfinite[2]; /* values of A and of B that are infinite or NaN */
+  double mean[2];        /* of A and of B */
+  double mse, rmse;
+  double relative_mse;   /* mean of d^2 / (b^2 + 0.01) */
+  double bias;           /* mean of A - B */
+  double max_abs;
+  uint32_t max_x, max_y; /* where that is */
+  double psnr;           /* dB against a peak of 1; infinite when mse is 0 */
+  double ssim;           /* of the sRGB-encoded luminance; NaN below 11 pixels */
+} cdl_Difference;
+
+/* Compares two picture files, in linear light. `layer` names a layer of both EXR files, NULL for the
+ * main one. CDL_DIFFERENT, and *difference unset, if their sizes differ; otherwise CDL_OK whatever
+ * the difference. */
+cdl_Status cdl_compare(const cdl_Log *log, const char *a, const char *b, const char *layer,
+                       cdl_Difference *difference);
 
 #pragma GCC visibility pop
 #ifdef __cplusplus

@@ -155,6 +155,7 @@ struct cdl_Scene {
   cdl_SceneEnvironment environment;
   float bounds[2][3]; /* of all instances in the world; min > max when there are none */
   char sha256[65];    /* of the file and all that it refers to, hexadecimal */
+  double load_s;      /* wall seconds that loading took */
 };
 
 typedef struct cdl_SceneOptions {
