@@ -19,12 +19,12 @@ CDL_ABI_SIZE(cdl_CameraParams, 80);
 
 typedef struct cdl_EnvironmentParams {
   uint present;  /* 0: black */
-  uint first;    /* word of its first texel in the environment's buffer; RGB floats, 4 words each */
-  uint width, height; /* 1 x 1 for a constant one */
+  uint width, height; /* texels; 1 x 1 for a constant one */
+  uint columns, rows; /* cells of the importance table; each divides the sphere like the texels do */
   float scale[3];     /* strength */
   float rotation_cos, rotation_sin; /* about +Y, counter-clockwise seen from above */
   float select_pdf;   /* probability that light sampling chooses it */
-  uint pad[2];
+  uint pad;
 } cdl_EnvironmentParams;
 CDL_ABI_SIZE(cdl_EnvironmentParams, 48);
 

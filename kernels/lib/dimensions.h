@@ -17,7 +17,8 @@
 #define CDL_PAIR_LIGHT 2u      /* the point on the light */
 #define CDL_PAIR_SELECT 3u     /* which light; opacity */
 #define CDL_PAIR_FREE_FLIGHT 4u /* which channel's extinction; the distance */
-#define CDL_PAIRS_PER_VERTEX 5u
+#define CDL_PAIR_TEXEL 5u /* the point within a cell of the environment */
+#define CDL_PAIRS_PER_VERTEX 6u
 
 /* Who draws: the pixel's key and the number of the sample. */
 typedef struct PathRandom {

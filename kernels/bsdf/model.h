@@ -1,0 +1,48 @@
+/* model.h: the one model that a shading kernel is built for, under names that do not say which.
+ * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross it. */
+#ifndef CDL_BSDF_MODEL_H
+#define CDL_BSDF_MODEL_H
+
+#include "abi/material.h"
+
+#if CDL_SHADE_MODEL == CDL_MODEL_MIRROR
+#include "bsdf/mirror.h"
+#define CDL_SHADE_LIT 0
+#define CDL_SHADE_TRANSMITS 0
+#define bsdf_evaluate mirror_evaluate
+#define bsdf_sample_model mirror_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_DIELECTRIC
+#include "bsdf/dielectric.h"
+#define CDL_SHADE_LIT 0
+#define CDL_SHADE_TRANSMITS 1
+#define bsdf_evaluate dielectric_evaluate
+#define bsdf_sample_model dielectric_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_DIFFUSE
+#include "bsdf/diffuse.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define bsdf_evaluate diffuse_evaluate
+#define bsdf_sample_model diffuse_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_CONDUCTOR
+#include "bsdf/conductor.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define bsdf_evaluate conductor_evaluate
+#define bsdf_sample_model conductor_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_RETROREFLECTOR
+#include "bsdf/retroreflector.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define bsdf_evaluate retroreflector_evaluate
+#define bsdf_sample_model retroreflector_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_GLTF
+#include "bsdf/gltf.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define bsdf_evaluate gltf_evaluate
+#define bsdf_sample_model gltf_sample
+#else
+#error "CDL_SHADE_MODEL names no material model that scatters light"
+#endif
+
+#endif

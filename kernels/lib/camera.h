@@ -1,0 +1,60 @@
+/* camera.h: rays of pinhole, thin-lens and orthographic cameras. */
+#ifndef CDL_CAMERA_H
+#define CDL_CAMERA_H
+
+#include "abi/params.h"
+#include "lib/sampling.h"
+#include "lib/transform.h"
+
+typedef struct CameraRay {
+  vec3 origin;
+  vec3 direction; /* unit */
+} CameraRay;
+
+CDL_INLINE Transform transform_of_camera(CDL_CONSTANT cdl_CameraParams *camera) {
+  CDL_CONSTANT float *m = camera->to_world;
+  Transform t;
+  t.x = v3(m[0], m[1], m[2]);
+  t.y = v3(m[4], m[5], m[6]);
+  t.z = v3(m[8], m[9], m[10]);
+  t.move = v3(m[3], m[7], m[11]);
+  return t;
+}
+
+/* A point on the lens in camera space: round, or a regular polygon of `blades` sides with a corner at
+ * the top, uniform by area. */
+CDL_INLINE vec3 camera_lens_point(CDL_CONSTANT cdl_CameraParams *camera, float u, float v) {
+  float disk_x, disk_y;
+  sampling_disk(u, v, &disk_x, &disk_y);
+  float blades = (float)(int)(camera->blades > 2u ? camera->blades : 3u);
+  float blade = floor(u * blades);
+  float within = u * blades - blade;
+  float reach = sqrt(v);
+  float sine0, cosine0, sine1, cosine1;
+  math_sincos_2pi(blade / blades, &sine0, &cosine0);
+  math_sincos_2pi((blade + 1.0f) / blades, &sine1, &cosine1);
+  float polygon_x = reach * math_lerp(sine0, sine1, within);
+  float polygon_y = reach * math_lerp(cosine0, cosine1, within);
+  int round = camera->blades < 3u;
+  return v3(camera->lens_radius * (round ? disk_x : polygon_x),
+            camera->lens_radius * (round ? disk_y : polygon_y), 0.0f);
+}
+
+/* x and y in [0,1] from the top left of the image; u and v choose the point on the lens. */
+CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, float y, float u,
+                                float v) {
+  float sx = fma(2.0f, x, -1.0f) * camera->scale[0];
+  float sy = fma(-2.0f, y, 1.0f) * camera->scale[1];
+  vec3 lens = camera_lens_point(camera, u, v);
+  vec3 focus = v3_scale(v3(sx, sy, -1.0f), camera->focus_distance);
+  int ortho = camera->orthographic != 0u;
+  vec3 origin = ortho ? v3(sx, sy, 0.0f) : lens;
+  vec3 towards = ortho ? v3(0.0f, 0.0f, -1.0f) : v3_sub(focus, lens);
+  CameraRay ray;
+  Transform to_world = transform_of_camera(camera);
+  ray.origin = transform_point(to_world, origin);
+  ray.direction = v3_normalize(transform_direction(to_world, towards));
+  return ray;
+}
+
+#endif
