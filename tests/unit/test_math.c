@@ -9,7 +9,7 @@
 #include <math.h>
 #include <stdio.h>
 
-#include "kernels/lib/math.h"
+#include "lib/math.h"
 
 #define STRIDE 409u /* a prime: every 409th float, 10 million over all bit patterns */
 
