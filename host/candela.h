@@ -40,8 +40,8 @@ typedef struct cdl_Log {
 /* A loaded scene. It is not changed by rendering; several sessions may share one. */
 typedef struct cdl_Scene cdl_Scene;
 
-/* Loads a .gltf or .glb file and all it refers to; `time` is the animation time in seconds, negative
- * for the pose at rest. *scene is set on success alone. */
+/* Loads a .gltf or .glb file and all it refers to; `time` is the animation time in seconds,
+ * negative for the pose at rest. *scene is set on success alone. */
 cdl_Status cdl_scene_load(const cdl_Log *log, const char *path, double time, cdl_Scene **scene);
 
 /* Replaces the scene's environment by an image file (latitude-longitude), NULL to keep it. */
@@ -55,15 +55,15 @@ void cdl_scene_set_background(cdl_Scene *scene, const float radiance[3]);
 
 void cdl_scene_free(cdl_Scene *scene); /* NULL is nothing */
 
-/* What it takes to make this very scene: the SHA-256 of the file, of all it refers to and of what was
- * replaced, 64 hexadecimal digits; valid as long as the scene. */
+/* What it takes to make this very scene: the SHA-256 of the file, of all it refers to and of what
+ * was replaced, 64 hexadecimal digits; valid as long as the scene. */
 const char *cdl_scene_sha256(const cdl_Scene *scene);
 
 /* An OpenCL device, opened. One session uses it at a time. */
 typedef struct cdl_Device cdl_Device;
 
-/* Opens the device that `selector` names: an index of the listing, or a part of a platform's or device's
- * name in any case; NULL for the best one. */
+/* Opens the device that `selector` names: an index of the listing, or a part of a platform's or
+ * device's name in any case; NULL for the best one. */
 cdl_Status cdl_device_open(const cdl_Log *log, const char *selector, cdl_Device **device);
 
 void cdl_device_close(cdl_Device *device); /* NULL is nothing */
@@ -71,46 +71,52 @@ void cdl_device_close(cdl_Device *device); /* NULL is nothing */
 /* Told of each step of a long preparation, "compiling kernel": `done` of `total`. */
 typedef void (*cdl_Stage)(void *user, const char *what, uint64_t done, uint64_t total);
 
-typedef enum cdl_Schedule { CDL_SCHEDULE_AUTO, CDL_SCHEDULE_WAVEFRONT, CDL_SCHEDULE_FUSED } cdl_Schedule;
+typedef enum cdl_Schedule {
+  CDL_SCHEDULE_AUTO,
+  CDL_SCHEDULE_WAVEFRONT,
+  CDL_SCHEDULE_FUSED
+} cdl_Schedule;
 
 /* What to render. cdl_settings_default() fills it. */
 typedef struct cdl_Settings {
-  uint32_t width, height;    /* pixels of the full image; one of them 0: from the camera's aspect */
-  uint32_t samples;          /* of each pixel, >= 1 */
-  uint32_t first_sample;     /* part of the samples: multiples of 16, but for the end of `samples` */
-  uint32_t sample_count;     /* 0: all from first_sample on */
-  uint32_t crop[4];          /* x, y, width, height; width 0: the full image */
-  const char *camera;        /* name or index; NULL: the first */
-  uint32_t max_depth;        /* scattering events after the camera ray, <= 4095 */
+  uint32_t width, height; /* pixels of the full image; one of them 0: from the camera's aspect */
+  uint32_t samples;       /* of each pixel, >= 1 */
+  uint32_t first_sample;  /* part of the samples: multiples of 16, but for the end of `samples` */
+  uint32_t sample_count;  /* 0: all from first_sample on */
+  uint32_t crop[4];       /* x, y, width, height; width 0: the full image */
+  const char *camera;     /* name or index; NULL: the first */
+  uint32_t max_depth;     /* scattering events after the camera ray, <= 4095 */
   uint32_t seed;
-  double time_limit;         /* s of rendering; 0: none */
-  double noise_target;       /* relative standard error of the image, median of pixels; 0: none */
-  uint32_t aovs;             /* bit i: entry i of the table in image/aov.h */
+  double time_limit;   /* s of rendering; 0: none */
+  double noise_target; /* relative standard error of the image, median of pixels; 0: none */
+  uint32_t aovs;       /* bit i: entry i of the table in image/aov.h */
   cdl_Schedule schedule;
-  uint32_t bvh_width;        /* 2 or 8; 0: what suits the device */
-  int fast_math;             /* 1: the device's own functions; gives up equal bits */
-  int profile;               /* 1: time every kernel launch */
-  cdl_Stage stage;           /* NULL: nobody wants to know */
+  uint32_t bvh_width; /* 2 or 8; 0: what suits the device */
+  int fast_math;      /* 1: the device's own functions; gives up equal bits */
+  int profile;        /* 1: time every kernel launch */
+  cdl_Stage stage;    /* NULL: nobody wants to know */
   void *stage_user;
 } cdl_Settings;
 
 /* 1280 pixels wide at the camera's aspect, 64 samples of seed 0, 16 events deep, no limits. */
 void cdl_settings_default(cdl_Settings *settings);
 
-/* Reads a list of AOVs, "albedo,normal" or "all", into the bits of cdl_Settings.aovs. CDL_USAGE names
- * what there is. */
+/* Reads a list of AOVs, "albedo,normal" or "all", into the bits of cdl_Settings.aovs. CDL_USAGE
+ * names what there is. */
 cdl_Status cdl_aovs_parse(const cdl_Log *log, const char *list, uint32_t *aovs);
 
 /* The AOVs one by one, from 0 on; NULL after the last. `meaning` may be NULL; both are static. */
 const char *cdl_aov_name(unsigned index, const char **meaning);
 
-/* A render in progress: the scene packed for a device, and the film. Scene and device outlive it. */
+/* A render in progress: the scene packed for a device, and the film. Scene and device outlive it.
+ */
 typedef struct cdl_Session cdl_Session;
 
-/* Called between passes and waves: samples done and to do, of all pixels together, and seconds so far.
- * Returning nonzero stops the render; what was finished is kept. The film is in order, so that it may
- * call cdl_session_save. */
-typedef int (*cdl_Progress)(void *user, uint64_t samples_done, uint64_t samples_total, double seconds);
+/* Called between passes and waves: samples done and to do, of all pixels together, and seconds so
+ * far. Returning nonzero stops the render; what was finished is kept. The film is in order, so that
+ * it may call cdl_session_save. */
+typedef int (*cdl_Progress)(void *user, uint64_t samples_done, uint64_t samples_total,
+                            double seconds);
 
 cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
                               const cdl_Settings *settings, cdl_Session **session);
@@ -119,8 +125,8 @@ cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_
  * stopped it. May be called again to go on. */
 cdl_Status cdl_session_render(cdl_Session *session, cdl_Progress progress, void *user);
 
-/* The picture's size in pixels (of the crop), and the samples that the pixel with the fewest and the
- * one with the most have so far. Pointers may be NULL. */
+/* The picture's size in pixels (of the crop), and the samples that the pixel with the fewest and
+ * the one with the most have so far. Pointers may be NULL. */
 void cdl_session_size(const cdl_Session *session, uint32_t *width, uint32_t *height);
 void cdl_session_samples(const cdl_Session *session, uint32_t *least, uint32_t *most);
 
@@ -131,8 +137,8 @@ cdl_Status cdl_session_pixels(const cdl_Session *session, float *rgb);
  * CDL_OUTPUT leaves an older one untouched. */
 cdl_Status cdl_session_save(cdl_Session *session, const char *path);
 
-/* Goes on from a checkpoint. CDL_BAD_INPUT, and nothing changed, if it is damaged or of another scene,
- * setting or version. */
+/* Goes on from a checkpoint. CDL_BAD_INPUT, and nothing changed, if it is damaged or of another
+ * scene, setting or version. */
 cdl_Status cdl_session_resume(cdl_Session *session, const char *path);
 
 /* How pictures of 8 bits are made; floating-point formats stay linear. */
@@ -145,12 +151,13 @@ typedef struct cdl_Display {
  * suffix, CDL_OUTPUT if the folder does not take a file. */
 cdl_Status cdl_output_check(const cdl_Log *log, const char *path);
 
-/* Writes the picture by suffix: .exr (all AOVs as layers, and what was rendered in the header; block
- * sums too if the session renders a part of the samples), .hdr, .tif, .png, .jpg. `display` may be
- * NULL. All at once: there is never half a file. */
+/* Writes the picture by suffix: .exr (all AOVs as layers, and what was rendered in the header;
+ * block sums too if the session renders a part of the samples), .hdr, .tif, .png, .jpg. `display`
+ * may be NULL. All at once: there is never half a file. */
 cdl_Status cdl_session_write(cdl_Session *session, const char *path, const cdl_Display *display);
 
-/* What was rendered and what it cost, as a JSON text that the caller frees; NULL if memory is short. */
+/* What was rendered and what it cost, as a JSON text that the caller frees; NULL if memory is
+ * short. */
 char *cdl_session_statistics_json(cdl_Session *session);
 
 /* The table of kernels, for people, that the caller frees; NULL without settings.profile. */
@@ -170,8 +177,9 @@ void cdl_session_free(cdl_Session *session); /* NULL is nothing */
 typedef struct cdl_Picture cdl_Picture;
 
 /* Reads EXR files that sessions wrote which rendered parts of the samples, in any order, and merges
- * them into the picture, bit for bit, that one session would have made of all samples. CDL_BAD_INPUT
- * names a part that does not belong to the first one, overlaps another, or what is missing. */
+ * them into the picture, bit for bit, that one session would have made of all samples.
+ * CDL_BAD_INPUT names a part that does not belong to the first one, overlaps another, or what is
+ * missing. */
 cdl_Status cdl_merge(const cdl_Log *log, const char *const *paths, size_t count,
                      cdl_Picture **picture);
 
@@ -185,22 +193,22 @@ cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text
 
 /* How far picture A is from the reference B; over the pixels that are finite in both. */
 typedef struct cdl_Difference {
-  int identical;         /* every value has the same bits */
+  int identical; /* every value has the same bits */
   uint64_t pixels, finite_pixels;
   uint64_t nonfinite[2]; /* values of A and of B that are infinite or NaN */
   double mean[2];        /* of A and of B */
   double mse, rmse;
-  double relative_mse;   /* mean of d^2 / (b^2 + 0.01) */
-  double bias;           /* mean of A - B */
+  double relative_mse; /* mean of d^2 / (b^2 + 0.01) */
+  double bias;         /* mean of A - B */
   double max_abs;
   uint32_t max_x, max_y; /* where that is */
   double psnr;           /* dB against a peak of 1; infinite when mse is 0 */
   double ssim;           /* of the sRGB-encoded luminance; NaN below 11 pixels */
 } cdl_Difference;
 
-/* Compares two picture files, in linear light. `layer` names a layer of both EXR files, NULL for the
- * main one. CDL_DIFFERENT, and *difference unset, if their sizes differ; otherwise CDL_OK whatever
- * the difference. */
+/* Compares two picture files, in linear light. `layer` names a layer of both EXR files, NULL for
+ * the main one. CDL_DIFFERENT, and *difference unset, if their sizes differ; otherwise CDL_OK
+ * whatever the difference. */
 cdl_Status cdl_compare(const cdl_Log *log, const char *a, const char *b, const char *layer,
                        cdl_Difference *difference);
 
