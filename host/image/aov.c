@@ -58,7 +58,7 @@ const cdl_Aov aov_table[CDL_AOV_COUNT] = {
                         {"id"},
                         CDL_CHANNEL_UINT,
                         CDL_AOV_FIRST_SAMPLE,
-                        "instance, counted from 1; 0 where nothing is hit"},
+                        "glTF node, counted from 1; 0 where nothing is hit"},
     [CDL_AOV_MATERIAL] = {"material",
                           "material",
                           1,

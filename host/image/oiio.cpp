@@ -54,6 +54,7 @@ void configure() {
     OIIO::attribute("limits:imagesize_MB", int(IMAGE_MAX_PIXELS * 4 * sizeof(float) >> 20));
     OIIO::attribute("limits:channels", 1024);
     OIIO::attribute("threads", 1);
+    OIIO::attribute("debug", 0); /* it prints */
   });
 }
 
@@ -268,6 +269,9 @@ ImageSpec layers_spec(const cdl_ImagePicture *picture) {
   spec.nchannels = int(spec.channelnames.size());
   if (spec.nchannels < 1) throw Failure{"a picture needs a layer"};
   spec.attribute("compression", "zip");
+  /* Without one the writer adds the time of day, and equal pictures would not be equal files. Of a
+   * type that it does not take, it is left out altogether. */
+  spec.attribute("DateTime", 0);
   for (int a = 0; a < picture->attribute_count; a++) {
     const cdl_ImageAttribute &entry = picture->attributes[a];
     if (entry.type == CDL_ATTRIBUTE_STRING) spec.attribute(entry.name, entry.string);
