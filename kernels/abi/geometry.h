@@ -4,6 +4,10 @@
 
 #include "abi/types.h"
 
+/* Visibility masks of instances: what stops light, and what it may pass straight through. */
+#define CDL_MASK_OPAQUE 1u
+#define CDL_MASK_PASSABLE 2u
+
 /* A triangle: corners count from its shape's first vertex. */
 typedef struct cdl_Triangle {
   uint corner[3];

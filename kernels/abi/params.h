@@ -56,7 +56,8 @@ typedef struct cdl_Wave {
   uint stride;     /* words between two fields of a path's state */
   uint slots;      /* words between two fields that are indexed by slot */
   uint live;   /* entries of the path state in use, pads included */
-  uint pad[2];
+  uint channels; /* of the film */
+  uint pad;
 } cdl_Wave;
 CDL_ABI_SIZE(cdl_Wave, 48);
 

@@ -25,7 +25,7 @@ CDL_INLINE Transform transform_of_camera(CDL_CONSTANT cdl_CameraParams *camera) 
  * the top, uniform by area. */
 CDL_INLINE vec3 camera_lens_point(CDL_CONSTANT cdl_CameraParams *camera, float u, float v) {
   float disk_x, disk_y;
-  sampling_disk(u, v, &disk_x, &disk_y);
+  sample_disk(u, v, &disk_x, &disk_y);
   float blades = (float)(int)(camera->blades > 2u ? camera->blades : 3u);
   float blade = floor(u * blades);
   float within = u * blades - blade;

@@ -63,8 +63,8 @@ CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance
   vec3 normal = v3_normalize(transform_transposed(to_object, blended));
   s.normal = v3_select(smooth, normal, s.geometric);
   vec3 tangent = transform_direction(to_world, barycentric(t0, t1, t2, u, v));
-  Frame frame = frame_from_tangent(s.normal, v3_select(has_tangent, tangent, v3_all(0.0f)));
-  s.tangent = frame.x;
+  vec3 along = v3_select(has_tangent, tangent, v3_all(0.0f));
+  s.tangent = frame_from_tangent(s.normal, along).x;
   s.handedness = has_tangent & (handedness < 0.0f) ? -1.0f : 1.0f;
   return s;
 }

@@ -16,7 +16,7 @@ CDL_INLINE float light_triangle_pdf(CDL_GLOBAL const cdl_Light *light, float dis
   return projected > 0.0f && pdf < CDL_INFINITY ? pdf : 0.0f;
 }
 
-/* Barycentrics of corners 1 and 2 of a point chosen uniformly; see sampling_triangle(). */
+/* Barycentrics of corners 1 and 2 of a point chosen uniformly; see sample_triangle(). */
 CDL_INLINE LightSample light_triangle_sample(CDL_GLOBAL const cdl_Light *light, vec3 position,
                                              float b1, float b2, vec3 radiance) {
   vec3 e1 = light_vec3(light->e1);

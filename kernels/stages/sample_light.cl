@@ -59,7 +59,7 @@ __kernel void sample_light(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wav
       light_sample_make(v3(0.0f, 0.0f, 1.0f), CDL_INFINITY, v3_all(0.0f), 0.0f);
 #ifdef CDL_TRIANGLE_LIGHTS
   float b1, b2;
-  sampling_triangle(u, v, &b1, &b2);
+  sample_triangle(u, v, &b1, &b2);
   vec3 radiance = triangle_radiance(light, b1, b2, triangles, shapes, attributes, materials, textures,
                                     texels, srgb);
   LightSample on_triangle = light_triangle_sample(light, position, b1, b2, radiance);

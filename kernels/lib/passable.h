@@ -1,0 +1,36 @@
+/* passable.h: surfaces that light goes straight through: boundaries of media, holes, half transparent
+ * surfaces. Used where a whole segment is followed at once. */
+#ifndef CDL_PASSABLE_H
+#define CDL_PASSABLE_H
+
+#include "abi/bvh.h"
+#include "bvh/hit.h"
+#include "lib/material.h"
+#include "lib/transform.h"
+#include "media/stack.h"
+
+/* Whether a ray along `direction` meets the front of the triangle: whether it enters. */
+CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInstance *instances,
+                          CDL_GLOBAL const cdl_Triangle *triangles,
+                          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes) {
+  CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
+  CDL_GLOBAL const float *p = attributes + shapes[triangle->shape].positions;
+  CDL_GLOBAL const float *a = p + 3 * (size_t)triangle->corner[0];
+  CDL_GLOBAL const float *b = p + 3 * (size_t)triangle->corner[1];
+  CDL_GLOBAL const float *c = p + 3 * (size_t)triangle->corner[2];
+  vec3 e1 = v3(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
+  vec3 e2 = v3(c[0] - a[0], c[1] - a[1], c[2] - a[2]);
+  Transform to_object = transform_load(instances[hit.instance].to_object);
+  return v3_dot(transform_transposed(to_object, v3_cross(e1, e2)), direction) < 0.0f;
+}
+
+CDL_INLINE MediaStack hit_crossed(Hit hit, MediaStack stack, vec3 direction, uint medium,
+                                  CDL_GLOBAL const cdl_BvhInstance *instances,
+                                  CDL_GLOBAL const cdl_Triangle *triangles,
+                                  CDL_GLOBAL const cdl_Shape *shapes,
+                                  CDL_GLOBAL const float *attributes) {
+  int enters = hit_enters(hit, direction, instances, triangles, shapes, attributes);
+  return media_crossed(stack, medium, enters);
+}
+
+#endif
