@@ -1,0 +1,123 @@
+/* sampling.h: from uniform numbers to directions, points and choices; heuristics and ray offsets.
+ *
+ * u and v are in [0, 1). Directions are of unit length in a local frame with +Z as its axis. Every
+ * map keeps neighbours together where it can, so that stratified numbers stay stratified. */
+#ifndef CDL_SAMPLING_H
+#define CDL_SAMPLING_H
+
+#include "lib/math.h"
+#include "lib/vec.h"
+
+/* The concentric map of the square to the unit disk (Shirley and Chiu 1997) without branches:
+ * radius signed, angle as (cosine, sine). x = radius cosine, y = radius sine. */
+CDL_INLINE float sample_disk_polar(float u, float v, float *cosine, float *sine) {
+  float a = fma(2.0f, u, -1.0f);
+  float b = fma(2.0f, v, -1.0f);
+  int wide = math_abs(a) > math_abs(b);
+  float radius = wide ? a : b;
+  float eighth = 0.125f * (wide ? b : a) / (radius == 0.0f ? 1.0f : radius);
+  math_sincos_2pi(wide ? eighth : 0.25f - eighth, sine, cosine);
+  return radius;
+}
+
+/* Uniform on the unit disk; density CDL_INV_PI by area. */
+CDL_INLINE void sample_disk(float u, float v, float *x, float *y) {
+  float cosine, sine;
+  float radius = sample_disk_polar(u, v, &cosine, &sine);
+  *x = radius * cosine;
+  *y = radius * sine;
+}
+
+CDL_INLINE float sample_cosine_hemisphere_pdf(float cosine) {
+  return math_max(cosine, 0.0f) * CDL_INV_PI;
+}
+
+/* Proportional to the cosine about +Z (Malley's method). z is at least 1e-4, so the density of what
+ * is drawn is never 0. */
+CDL_INLINE vec3 sample_cosine_hemisphere(float u, float v) {
+  float cosine, sine;
+  float radius = sample_disk_polar(u, v, &cosine, &sine);
+  float z = sqrt(math_max((1.0f - radius) * (1.0f + radius), 1e-8f));
+  return v3(radius * cosine, radius * sine, z);
+}
+
+/* Uniform over the directions within a cone about +Z whose half-angle t is given as
+ * one_minus_cos = 1 - cos t in (0, 2], which keeps narrow cones accurate; 2 gives the sphere. */
+CDL_INLINE vec3 sample_cone(float u, float v, float one_minus_cos) {
+  float h = u * one_minus_cos;
+  float radius = math_safe_sqrt(h * (2.0f - h));
+  float cosine, sine;
+  math_sincos_2pi(v, &sine, &cosine);
+  return v3(radius * cosine, radius * sine, 1.0f - h);
+}
+
+/* Density inside the cone, by solid angle. */
+CDL_INLINE float sample_cone_pdf(float one_minus_cos) { return CDL_INV_2PI / one_minus_cos; }
+
+/* Uniform over all directions; density CDL_INV_4PI by solid angle. */
+CDL_INLINE vec3 sample_sphere(float u, float v) { return sample_cone(u, v, 2.0f); }
+
+/* Uniform on a triangle, as the barycentric weights of its first two corners; the third's is the
+ * rest to 1 and not negative. Density 1 / area. (Heitz 2019, "A Low-Distortion Map Between Triangle
+ * and Square") */
+CDL_INLINE void sample_triangle(float u, float v, float *b0, float *b1) {
+  int upper = v > u;
+  float half_small = 0.5f * (upper ? u : v);
+  float rest = (upper ? v : u) - half_small;
+  *b0 = upper ? half_small : rest;
+  *b1 = upper ? rest : half_small;
+}
+
+/* The slot of an alias table of `count` >= 1 entries, and where u lies in it, in [0, 1). A table of
+ * 2^k entries leaves 24 - k bits there: give sample_alias a number of its own when k is large. */
+CDL_INLINE uint sample_alias_slot(float u, uint count, float *fraction) {
+  float x = u * (float)count;
+  uint slot = (uint)x;
+  slot = slot < count ? slot : count - 1u;
+  *fraction = math_clamp(x - (float)slot, 0.0f, CDL_ONE_MINUS_EPSILON);
+  return slot;
+}
+
+/* Picks `slot` with probability `keep`, else `alias` (Walker 1977); both come from the table's
+ * entry at `slot`. u is used up by the choice and comes back in *rest, uniform on [0, 1) again. */
+CDL_INLINE uint sample_alias(uint slot, float keep, uint alias, float u, float *rest) {
+  int kept = u < keep;
+  float span = kept ? keep : 1.0f - keep;
+  float part = kept ? u : u - keep;
+  *rest = math_clamp(part / (span > 0.0f ? span : 1.0f), 0.0f, CDL_ONE_MINUS_EPSILON);
+  return kept ? slot : alias;
+}
+
+/* Multiple importance sampling (Veach 1997, section 9.2): the weight of a sample drawn with density
+ * `own` that the other technique would have drawn with density `other`, both >= 0. Infinite
+ * densities are limits; two equal ones weigh 1/2, and own = 0 weighs 0. */
+CDL_INLINE float mis_ratio(float own, float other) {
+  return own == other ? 1.0f : other / (own > 0.0f ? own : 1.0f);
+}
+
+CDL_INLINE float mis_balance(float own, float other) {
+  return own > 0.0f ? 1.0f / (1.0f + mis_ratio(own, other)) : 0.0f;
+}
+
+CDL_INLINE float mis_power(float own, float other) {
+  float ratio = mis_ratio(own, other);
+  return own > 0.0f ? 1.0f / fma(ratio, ratio, 1.0f) : 0.0f;
+}
+
+/* One coordinate of offset_ray. The bits of a float are an ordered integer, so adding to them moves
+ * by units in the last place; near 0, where those vanish, a fixed step does. */
+CDL_INLINE float offset_coordinate(float p, float n) {
+  uint step = (uint)(int)(256.0f * n);
+  uint bits = as_uint(p);
+  float moved = as_float((bits >> 31) != 0u ? bits - step : bits + step);
+  return math_abs(p) < 0.03125f ? fma(n, 1.52587891e-5f, p) : moved;
+}
+
+/* Moves a point computed on a surface off it along unit normal n, so that a ray from there does not
+ * meet the surface again; n is on the side to which the ray leaves. (Waechter and Binder 2019, "A
+ * Fast and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, chapter 6) */
+CDL_INLINE vec3 offset_ray(vec3 p, vec3 n) {
+  return v3(offset_coordinate(p.x, n.x), offset_coordinate(p.y, n.y), offset_coordinate(p.z, n.z));
+}
+
+#endif

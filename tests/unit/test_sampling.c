@@ -1,0 +1,325 @@
+/* test_sampling.c: kernels/lib/sampling.h against closed forms and chi-squared tests. */
+#include <stdarg.h>
+#include <stddef.h>
+#include <setjmp.h>
+#include <stdint.h>
+#include <cmocka.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+#include "lib/sampling.h"
+#include "random.h"
+
+enum { SAMPLES = 1000000, SIDE = 32, CELLS = SIDE * SIDE };
+
+/* Number of chi-squared tests in this file; one-sided deviate for 1 - 0.99^(1/10), Sidak's bound.
+ */
+static const double LIMIT = 3.09;
+
+static const double PI = 3.14159265358979323846;
+
+typedef struct Histogram {
+  double count[CELLS];
+  double expected[CELLS];
+} Histogram;
+
+static void histogram_uniform(Histogram *h) {
+  for (int i = 0; i < CELLS; i++) {
+    h->count[i] = 0.0;
+    h->expected[i] = (double)SAMPLES / CELLS;
+  }
+}
+
+/* Counts (a, b) in the unit square; anything outside is an error. */
+static void histogram_add(Histogram *h, double a, double b) {
+  assert_true(a >= 0.0 && a <= 1.0 && b >= 0.0 && b <= 1.0);
+  int i = a < 1.0 ? (int)(a * SIDE) : SIDE - 1;
+  int j = b < 1.0 ? (int)(b * SIDE) : SIDE - 1;
+  h->count[i * SIDE + j] += 1.0;
+}
+
+/* Pools cells until each expects 5; Wilson and Hilferty's normal deviate of the sum. */
+static void histogram_check(const Histogram *h, const char *name) {
+  double chi2 = 0.0, count = 0.0, expected = 0.0;
+  int pools = 0;
+  for (int i = 0; i < CELLS; i++) {
+    count += h->count[i];
+    expected += h->expected[i];
+    if (expected < 5.0) continue;
+    chi2 += (count - expected) * (count - expected) / expected;
+    count = expected = 0.0;
+    pools++;
+  }
+  assert_true(count == 0.0 || expected > 0.0);
+  double spread = 2.0 / (9.0 * (pools - 1));
+  double deviate = (cbrt(chi2 / (pools - 1)) - (1.0 - spread)) / sqrt(spread);
+  print_message("  %-18s chi2 %+.2f sigma over %d cells\n", name, deviate, pools);
+  assert_true(deviate < LIMIT);
+}
+
+static double turn_of(double y, double x) {
+  double turn = atan2(y, x) / (2.0 * PI);
+  return turn < 0.0 ? turn + 1.0 : turn;
+}
+
+static void disk_is_uniform(void **state) {
+  (void)state;
+  Histogram h;
+  histogram_uniform(&h);
+  random_start(1);
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = random_unit(), v = random_unit(), x, y;
+    sample_disk(u, v, &x, &y);
+    double r2 = (double)x * x + (double)y * y;
+    assert_true(r2 <= 1.0 + 1e-6);
+    histogram_add(&h, fmin(r2, 1.0), turn_of(y, x));
+  }
+  histogram_check(&h, "disk");
+}
+
+/* Squares about the centre become circles, and the diagonal keeps its direction. */
+static void disk_keeps_its_shape(void **state) {
+  (void)state;
+  static const float corner[4][2] = {
+      {0.25f, 0.25f}, {0.75f, 0.25f}, {0.75f, 0.75f}, {0.25f, 0.75f}};
+  for (int i = 0; i < 4; i++) {
+    float x, y;
+    sample_disk(corner[i][0], corner[i][1], &x, &y);
+    double side = 0.5 * sqrt(0.5);
+    assert_true(fabs((double)x - (corner[i][0] > 0.5f ? side : -side)) < 1e-7);
+    assert_true(fabs((double)y - (corner[i][1] > 0.5f ? side : -side)) < 1e-7);
+  }
+  float x, y;
+  sample_disk(0.5f, 0.5f, &x, &y);
+  assert_true(x == 0.0f && y == 0.0f);
+}
+
+static void assert_unit(vec3 v) {
+  double l2 = (double)v.x * v.x + (double)v.y * v.y + (double)v.z * v.z;
+  assert_true(fabs(l2 - 1.0) < 1e-6);
+}
+
+/* The cosine density is uniform in (z^2, azimuth). */
+static void cosine_hemisphere_matches_its_density(void **state) {
+  (void)state;
+  Histogram h;
+  histogram_uniform(&h);
+  random_start(2);
+  double inverse = 0.0;
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = random_unit(), v = random_unit();
+    vec3 w = sample_cosine_hemisphere(u, v);
+    assert_unit(w);
+    assert_true(w.z > 0.0f);
+    histogram_add(&h, fmin((double)w.z * w.z, 1.0), turn_of(w.y, w.x));
+    inverse += (double)w.z / sample_cosine_hemisphere_pdf(w.z);
+  }
+  histogram_check(&h, "cosine hemisphere");
+  assert_true(fabs(inverse / SAMPLES - PI) < 1e-5);
+  assert_true(sample_cosine_hemisphere(0.0f, 0.5f).z > 0.0f);
+  assert_true(sample_cosine_hemisphere_pdf(-0.5f) == 0.0f);
+}
+
+static void sphere_is_uniform(void **state) {
+  (void)state;
+  Histogram h;
+  histogram_uniform(&h);
+  random_start(3);
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = random_unit(), v = random_unit();
+    vec3 w = sample_sphere(u, v);
+    assert_unit(w);
+    histogram_add(&h, 0.5 + 0.5 * w.z, turn_of(w.y, w.x));
+  }
+  histogram_check(&h, "sphere");
+}
+
+static void check_cone(float one_minus_cos, const char *name) {
+  Histogram h;
+  histogram_uniform(&h);
+  random_start(4);
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = random_unit(), v = random_unit();
+    vec3 w = sample_cone(u, v, one_minus_cos);
+    assert_unit(w);
+    /* 1 - z from the sine, which is accurate in a narrow cone */
+    double s2 = (double)w.x * w.x + (double)w.y * w.y;
+    double h2 = w.z > 0.5f ? s2 / (1.0 + sqrt(1.0 - s2)) : 1.0 - (double)w.z;
+    double a = h2 / one_minus_cos;
+    assert_true(a <= 1.0 + 1e-5);
+    histogram_add(&h, fmin(a, 1.0), turn_of(w.y, w.x));
+  }
+  histogram_check(&h, name);
+  double solid_angle = 2.0 * PI * one_minus_cos;
+  assert_true(fabs(sample_cone_pdf(one_minus_cos) * solid_angle - 1.0) < 1e-6);
+}
+
+static void cones_are_uniform(void **state) {
+  (void)state;
+  check_cone(1e-5f, "cone, 0.26 deg");
+  check_cone(0.3f, "cone, 46 deg");
+  check_cone(1.0f, "hemisphere");
+}
+
+/* Cells of a grid over (b0, b1): whole below the diagonal, halves on it. */
+static void triangle_is_uniform(void **state) {
+  (void)state;
+  Histogram h;
+  for (int i = 0; i < CELLS; i++) {
+    int below = SIDE - 1 - i / SIDE - i % SIDE;
+    h.count[i] = 0.0;
+    h.expected[i] = SAMPLES * (below > 0 ? 2.0 : (below == 0 ? 1.0 : 0.0)) / CELLS;
+  }
+  random_start(5);
+  for (int i = 0; i < SAMPLES; i++) {
+    float u = random_unit(), v = random_unit(), b0, b1;
+    sample_triangle(u, v, &b0, &b1);
+    assert_true(b0 >= 0.0f && b1 >= 0.0f && 1.0f - b0 - b1 >= 0.0f);
+    histogram_add(&h, b0, b1);
+  }
+  histogram_check(&h, "triangle");
+}
+
+enum { ENTRIES = 37 };
+
+/* Vose's construction in double. */
+static void build_alias(const double *weights, float *keep, uint *alias) {
+  double scaled[ENTRIES], total = 0.0;
+  int small[ENTRIES], large[ENTRIES], smalls = 0, larges = 0;
+  for (int i = 0; i < ENTRIES; i++) total += weights[i];
+  for (int i = 0; i < ENTRIES; i++) {
+    scaled[i] = weights[i] * ENTRIES / total;
+    keep[i] = 1.0f;
+    alias[i] = (uint)i;
+    if (scaled[i] < 1.0)
+      small[smalls++] = i;
+    else
+      large[larges++] = i;
+  }
+  while (smalls && larges) {
+    int s = small[--smalls], l = large[larges - 1];
+    keep[s] = (float)scaled[s];
+    alias[s] = (uint)l;
+    scaled[l] -= 1.0 - scaled[s];
+    if (scaled[l] >= 1.0) continue;
+    larges--;
+    small[smalls++] = l;
+  }
+}
+
+static void alias_picks_by_weight_and_leaves_uniform_rest(void **state) {
+  (void)state;
+  double weights[ENTRIES], total = 0.0;
+  float keep[ENTRIES];
+  uint alias[ENTRIES];
+  for (int i = 0; i < ENTRIES; i++) total += weights[i] = i % 7 == 3 ? 0.0 : 1.0 + i * i % 11;
+  build_alias(weights, keep, alias);
+  Histogram rests;
+  histogram_uniform(&rests);
+  static Histogram picks;
+  for (int i = 0; i < CELLS; i++) {
+    picks.count[i] = 0.0;
+    picks.expected[i] = i < ENTRIES ? SAMPLES * weights[i] / total : 0.0;
+  }
+  random_start(6);
+  for (int i = 0; i < SAMPLES; i++) {
+    float fraction, rest, u = random_unit();
+    uint slot = sample_alias_slot(u, ENTRIES, &fraction);
+    uint pick = sample_alias(slot, keep[slot], alias[slot], fraction, &rest);
+    assert_true(slot < ENTRIES && weights[pick] > 0.0 && rest >= 0.0f && rest < 1.0f);
+    picks.count[pick] += 1.0;
+    float other = random_unit();
+    histogram_add(&rests, rest, other);
+  }
+  histogram_check(&picks, "alias picks");
+  histogram_check(&rests, "alias rest");
+}
+
+static void alias_slots_stay_inside(void **state) {
+  (void)state;
+  static const uint counts[] = {1u, 2u, 3u, 1000003u, 16777215u, 40000000u};
+  for (int i = 0; i < 6; i++) {
+    float fraction;
+    uint slot = sample_alias_slot(CDL_ONE_MINUS_EPSILON, counts[i], &fraction);
+    assert_true(slot < counts[i] && fraction >= 0.0f && fraction < 1.0f);
+    assert_int_equal(sample_alias_slot(0.0f, counts[i], &fraction), 0);
+  }
+}
+
+static void heuristics_weigh_to_one(void **state) {
+  (void)state;
+  random_start(7);
+  for (int i = 0; i < 100000; i++) {
+    float a = math_exp2(60.0f * random_signed()), b = math_exp2(60.0f * random_signed());
+    assert_true(fabs((double)mis_power(a, b) + mis_power(b, a) - 1.0) < 2e-7);
+    assert_true(fabs((double)mis_balance(a, b) + mis_balance(b, a) - 1.0) < 2e-7);
+    double exact = (double)a * a / ((double)a * a + (double)b * b);
+    assert_true(fabs(mis_power(a, b) - exact) <= 1e-6 * exact + 1e-30);
+  }
+}
+
+static void heuristics_keep_their_limits(void **state) {
+  (void)state;
+  float (*const heuristics[])(float, float) = {mis_power, mis_balance};
+  for (int i = 0; i < 2; i++) {
+    float (*weight)(float, float) = heuristics[i];
+    assert_true(weight(1.0f, 0.0f) == 1.0f && weight(0.0f, 1.0f) == 0.0f);
+    assert_true(weight(0.0f, 0.0f) == 0.0f);
+    assert_true(weight(INFINITY, 1.0f) == 1.0f && weight(1.0f, INFINITY) == 0.0f);
+    assert_true(weight(INFINITY, INFINITY) == 0.5f && weight(INFINITY, 0.0f) == 1.0f);
+    assert_true(weight(3e38f, 3e38f) == 0.5f && weight(1e-45f, 1e-45f) == 0.5f);
+    assert_true(weight(1e30f, 1e-30f) == 1.0f);
+  }
+}
+
+static vec3 random_corner(vec3 centre, float size) {
+  float x = random_signed(), y = random_signed(), z = random_signed();
+  return v3_madd(centre, size, v3(x, y, z));
+}
+
+/* Signed distance in double from the plane of the float triangle. */
+static double plane_distance(vec3 p, vec3 corner, vec3 n) {
+  return ((double)p.x - corner.x) * n.x + ((double)p.y - corner.y) * n.y +
+         ((double)p.z - corner.z) * n.z;
+}
+
+/* Points interpolated on triangles of many sizes and places leave their plane, to the right side
+ * and not far. */
+static void offset_points_leave_their_surface(void **state) {
+  (void)state;
+  random_start(8);
+  for (int i = 0; i < SAMPLES; i++) {
+    float scale = math_exp2(8.0f * random_signed());
+    vec3 centre = v3_scale(random_normal(), scale);
+    float size = 0.25f * scale;
+    vec3 a = random_corner(centre, size), b = random_corner(centre, size);
+    vec3 c = random_corner(centre, size);
+    vec3 n = v3_normalize(v3_cross(v3_sub(b, a), v3_sub(c, a)));
+    float u = random_unit(), v = random_unit(), b0, b1;
+    sample_triangle(u, v, &b0, &b1);
+    vec3 p = v3_madd(v3_madd(v3_scale(a, b0), b1, b), 1.0f - b0 - b1, c);
+    double up = plane_distance(offset_ray(p, n), a, n);
+    double down = plane_distance(offset_ray(p, v3_neg(n)), a, n);
+    double far = 1.6e-4 * scale + 3e-5;
+    assert_true(up > 0.0 && up < far && down < 0.0 && down > -far);
+  }
+}
+
+int main(void) {
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(disk_is_uniform),
+      cmocka_unit_test(disk_keeps_its_shape),
+      cmocka_unit_test(cosine_hemisphere_matches_its_density),
+      cmocka_unit_test(sphere_is_uniform),
+      cmocka_unit_test(cones_are_uniform),
+      cmocka_unit_test(triangle_is_uniform),
+      cmocka_unit_test(alias_picks_by_weight_and_leaves_uniform_rest),
+      cmocka_unit_test(alias_slots_stay_inside),
+      cmocka_unit_test(heuristics_weigh_to_one),
+      cmocka_unit_test(heuristics_keep_their_limits),
+      cmocka_unit_test(offset_points_leave_their_surface),
+  };
+  return cmocka_run_group_tests(tests, NULL, NULL);
+}
