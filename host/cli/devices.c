@@ -1,14 +1,12 @@
 /* candela devices: every platform and device, what it lacks, and why it cannot be used. */
+#include "cli/cli.h"
 #include "core/log.h"
 #include "device/device.h"
 
-#include <argp.h>
 #include <jansson.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-int cli_devices(int argc, char **argv);
 
 typedef struct Options {
   int json;
@@ -18,13 +16,12 @@ static const struct argp_option option_list[] = {
     {"json", 'j', NULL, 0, "Print JSON on standard output", 0}, {0}};
 
 static error_t parse_option(int key, char *value, struct argp_state *state) {
-  (void)value;
   Options *options = state->input;
   if (key == 'j') {
     options->json = 1;
     return 0;
   }
-  if (key == ARGP_KEY_ARG) argp_usage(state);
+  if (key == ARGP_KEY_ARG) cli_usage("unexpected argument '%s'", value);
   return ARGP_ERR_UNKNOWN;
 }
 
@@ -41,11 +38,6 @@ static const struct argp parser = {
     NULL,
     NULL,
     NULL};
-
-static void to_stderr(void *user, cdl_LogLevel level, const char *message) {
-  (void)user;
-  if (level != CDL_LOG_NOTE) fprintf(stderr, "candela: %s\n", message);
-}
 
 /* Keeps the last message: the reason why a device could not be measured. */
 static void to_text(void *user, cdl_LogLevel level, const char *message) {
@@ -122,11 +114,11 @@ static json_t *device_json(const cdl_DeviceInfo *d, int is_default) {
                 "native_float_width", (json_int_t)d->native_float_width, "global_mem_bytes",
                 (json_int_t)d->global_mem, "max_alloc_bytes", (json_int_t)d->max_alloc,
                 "local_mem_bytes", (json_int_t)d->local_mem, "timer_ns", (json_int_t)d->timer_ns));
-  json_object_update_new(json,
-                         json_pack("{s:b, s:b, s:b, s:b, s:s, s:s}", "fma", d->has_fma, "denorms",
-                                   d->has_denorms, "correctly_rounded_divide_sqrt",
-                                   d->has_correct_divide, "exact", d->exact >= CDL_EXACT_REPORTED,
-                                   "exact_verdict", exactness[d->exact], "exactness", d->exactness));
+  json_object_update_new(json, json_pack("{s:b, s:b, s:b, s:b, s:s, s:s}", "fma", d->has_fma,
+                                         "denorms", d->has_denorms, "correctly_rounded_divide_sqrt",
+                                         d->has_correct_divide, "exact",
+                                         d->exact >= CDL_EXACT_REPORTED, "exact_verdict",
+                                         exactness[d->exact], "exactness", d->exactness));
   return json;
 }
 
@@ -142,21 +134,20 @@ static void print_json(const cdl_DeviceInfo *list, size_t count, int best) {
 
 int cli_devices(int argc, char **argv) {
   Options options = {0};
-  cdl_Log log = {to_stderr, NULL};
   cdl_DeviceInfo *list = NULL;
   size_t count = 0, best = 0;
-  error_t error = argp_parse(&parser, argc, argv, 0, NULL, &options);
-  if (error) return CDL_USAGE;
-  cdl_Status status = device_list(&log, &list, &count);
+  cli_parse(&parser, argc, argv, &options);
+  cdl_Status status = device_list(&cli_log, &list, &count);
   if (status) return status;
   for (size_t i = 0; i < count; i++) measure(&list[i]);
-  status = device_select(&log, list, count, NULL, &best);
+  status = device_select(&cli_log, list, count, NULL, &best);
   int default_entry = status ? -1 : (int)best;
   if (options.json)
     print_json(list, count, default_entry);
   else
     print_list(list, count, default_entry);
   free(list);
-  if (fflush(stdout) || ferror(stdout)) return log_fail(&log, CDL_OUTPUT, "standard output: lost");
+  if (fflush(stdout) || ferror(stdout))
+    return log_fail(&cli_log, CDL_OUTPUT, "standard output could not be written");
   return status;
 }

@@ -1,4 +1,5 @@
-/* Kernel sources: flattening against hand-written results, and the tree's hash. No OpenCL device. */
+/* Kernel sources: flattening against hand-written results, and the tree's hash. No OpenCL device.
+ */
 #include "core/log.h"
 #include "device/device.h"
 #include "device/program.h"
@@ -57,7 +58,8 @@ static void flattens_nested_includes(void **state) {
   (void)state;
   char *text;
   put("lib/inner.h", "#ifndef INNER\n#define INNER\nint inner;\n#endif\n");
-  put("lib/outer.h", "#ifndef OUTER\n#define OUTER\n#include \"lib/inner.h\"\nint outer;\n#endif\n");
+  put("lib/outer.h",
+      "#ifndef OUTER\n#define OUTER\n#include \"lib/inner.h\"\nint outer;\n#endif\n");
   put("a.cl", "#include \"lib/inner.h\"\n#include <system.h>\n#include \"lib/outer.h\"\nint a;\n");
   assert_int_equal(source_flatten(&test_log, "a.cl", &text), CDL_OK);
   assert_string_equal(text, "#line 1 \"a.cl\"\n"
