@@ -2,11 +2,11 @@
 #include "bvh/bvh.h"
 
 #include <stdlib.h>
-#include <time.h>
 
 #include "bvh/instances.h"
 #include "bvh/layout.h"
 #include "bvh/statistics.h"
+#include "core/clock.h"
 #include "core/log.h"
 
 /* What a width stands for. */
@@ -43,12 +43,6 @@ typedef struct Build {
   Tree top;
   cdl_Bvh *bvh;
 } Build;
-
-static double now(void) {
-  struct timespec t;
-  clock_gettime(CLOCK_MONOTONIC, &t);
-  return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static cdl_Status no_memory(const Build *b, const char *what, size_t bytes) {
   return log_fail(b->log, CDL_BAD_INPUT,
@@ -198,7 +192,7 @@ static void build_close(Build *b) {
 cdl_Status bvh_build(const cdl_Log *log, const cdl_BvhMesh *meshes, uint32_t mesh_count,
                      const cdl_BvhPlacement *placements, uint32_t placement_count,
                      const cdl_BvhOptions *options, cdl_Bvh *bvh) {
-  double start = now();
+  double start = clock_now();
   *bvh = (cdl_Bvh){.width = options && options->width == 8 ? 8 : 2};
   Build b = {.log = log, .width = choose_width(options), .mesh_count = mesh_count, .bvh = bvh};
   cdl_Status status = build_meshes(&b, meshes);
@@ -208,7 +202,7 @@ cdl_Status bvh_build(const cdl_Log *log, const cdl_BvhMesh *meshes, uint32_t mes
   status = write_layout(&b);
 done:
   build_close(&b);
-  bvh->statistics.seconds = now() - start;
+  bvh->statistics.seconds = clock_now() - start;
   return status;
 }
 

@@ -24,11 +24,23 @@
 
 #include "bvh/triangle.h"
 
-#if CDL_BVH_WIDTH == 8
-#include "bvh/traverse8.h"
-#else
 #include "bvh/traverse2.h"
-#endif
+#include "bvh/traverse8.h"
+
+CDL_INLINE Hit bvh_closest_after(CDL_GLOBAL const BvhNode *nodes,
+                                 CDL_GLOBAL const BvhTriangle *triangles,
+                                 CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o,
+                                 vec3 d, float tmax, uint mask, Hit after) {
+  return bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, after, 0);
+}
+
+CDL_INLINE int bvh_occluded(CDL_GLOBAL const BvhNode *nodes,
+                            CDL_GLOBAL const BvhTriangle *triangles,
+                            CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
+                            float tmax, uint mask) {
+  return hit_is_some(
+      bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f), 1));
+}
 
 CDL_INLINE Hit bvh_closest(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
                            CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,

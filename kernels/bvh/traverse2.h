@@ -8,6 +8,8 @@
 
 #include "bvh/triangle.h"
 
+#if CDL_BVH_WIDTH == 2
+
 typedef cdl_BvhNode BvhNode;
 typedef cdl_BvhTriangle BvhTriangle;
 
@@ -97,19 +99,5 @@ CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhT
   }
 }
 
-CDL_INLINE Hit bvh_closest_after(CDL_GLOBAL const BvhNode *nodes,
-                                 CDL_GLOBAL const BvhTriangle *triangles,
-                                 CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o,
-                                 vec3 d, float tmax, uint mask, Hit after) {
-  return bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, after, 0);
-}
-
-CDL_INLINE int bvh_occluded(CDL_GLOBAL const BvhNode *nodes,
-                            CDL_GLOBAL const BvhTriangle *triangles,
-                            CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                            float tmax, uint mask) {
-  return hit_is_some(
-      bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f), 1));
-}
-
+#endif
 #endif
