@@ -8,18 +8,23 @@
 
 #define BECKMANN_INV_SQRT_PI 0.564189583f
 
+/* exp(-80) counts as 0: beyond come denormals, on which processors take a hundred times as long. */
+#define BECKMANN_EXPONENT_MAX 80.0f
+
 /* D for a squared stretched slope s2 = (h.x / (alpha_x h.z))^2 + (h.y / (alpha_y h.z))^2: the
  * normalised form exp(-s2) / (pi alpha_x alpha_y cos^4). */
 CDL_INLINE float beckmann_density(float s2, float cos_h, float alpha_x, float alpha_y) {
   float cos2 = cos_h * cos_h;
-  return math_exp(-s2) / math_max(CDL_PI * alpha_x * alpha_y * cos2 * cos2, 1e-37f);
+  float area = math_max(CDL_PI * alpha_x * alpha_y * cos2 * cos2, 1e-30f);
+  float value = math_exp(-math_min(s2, BECKMANN_EXPONENT_MAX)) / area;
+  return s2 < BECKMANN_EXPONENT_MAX ? value : 0.0f;
 }
 
 /* Smith's Lambda for a = 1 / (alpha tan(theta)) >= 0, not fitted: (exp(-a^2) / (a sqrt(pi)) -
  * erfc(a)) / 2, with erfc(a) exp(a^2) after Hastings (Abramowitz and Stegun 7.1.26). Absolute error
  * below 1e-7 + 1e-6 Lambda. */
 CDL_INLINE float beckmann_lambda(float a) {
-  a = math_clamp(a, 1e-30f, 10.0f);
+  a = math_clamp(a, 1e-30f, 6.0f); /* beyond, Lambda < 1e-18 */
   float t = 1.0f / fma(0.3275911f, a, 1.0f);
   float p = fma(fma(1.061405429f, t, -1.453152027f), t, 1.421413741f);
   p = fma(fma(p, t, -0.284496736f), t, 0.254829592f) * t;
@@ -48,7 +53,7 @@ CDL_INLINE float beckmann_erf(float x) {
   float t = 1.0f / fma(0.3275911f, x, 1.0f);
   float p = fma(fma(1.061405429f, t, -1.453152027f), t, 1.421413741f);
   p = fma(fma(p, t, -0.284496736f), t, 0.254829592f) * t;
-  return 1.0f - p * math_exp(-x * x);
+  return 1.0f - p * math_exp(-math_min(x * x, BECKMANN_EXPONENT_MAX));
 }
 
 /* Slopes beyond +-3.7, one facet in 10^7, are left out: erf has no further floats there. */
@@ -71,7 +76,7 @@ CDL_INLINE float beckmann_slope_step(float b, float a, float limit, float target
 CDL_INLINE float beckmann_visible_slope(float a, float u) {
   a = math_min(a, 1e4f);
   float limit = math_min(beckmann_erf(a), BECKMANN_ERF_LIMIT);
-  float e = math_exp(-a * a);
+  float e = math_exp(-math_min(a * a, BECKMANN_EXPONENT_MAX));
   float area = 0.5f * fma(BECKMANN_INV_SQRT_PI, e, a * (1.0f + limit));
   float r = math_safe_sqrt(1.0f - u);
   float root = 2.0f * BECKMANN_INV_SQRT_PI * sqrt(2.0f * area * e / BECKMANN_INV_SQRT_PI);
