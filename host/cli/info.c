@@ -1,0 +1,214 @@
+/* candela info: what is in a scene, and what of it is not supported. */
+#include "cli/cli.h"
+#include "core/log.h"
+#include "scene/scene.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct Options {
+  int json;
+  const char *path;
+} Options;
+
+static const struct argp_option option_list[] = {
+    {"json", 'j', NULL, 0, "Print JSON on standard output", 0}, {0}};
+
+static error_t parse_option(int key, char *value, struct argp_state *state) {
+  Options *options = state->input;
+  switch (key) {
+  case 'j':
+    options->json = 1;
+    return 0;
+  case ARGP_KEY_ARG:
+    if (options->path) cli_usage("one scene at a time: '%s' is one too many", value);
+    options->path = value;
+    return 0;
+  case ARGP_KEY_END:
+    if (!options->path) cli_usage("no scene given");
+    return 0;
+  default:
+    return ARGP_ERR_UNKNOWN;
+  }
+}
+
+static const struct argp parser = {
+    option_list,
+    parse_option,
+    "SCENE",
+    "Tells what is in a glTF scene, and what of it is not supported.\v"
+    "Triangles are counted as they are shown: those of a mesh once for each of its instances. "
+    "Lights are punctual lights, shapes that emit, and the environment.\n\n"
+    "Exit status: 0, 3 if the scene is damaged or cannot be read, 2 for wrong usage.",
+    NULL,
+    NULL,
+    NULL};
+
+/* What is counted rather than stored. */
+typedef struct Totals {
+  uint64_t triangles, unique_triangles, memory;
+  uint32_t emissive;
+} Totals;
+
+static const char *const models[CDL_MODEL_COUNT] = {[CDL_MODEL_UNLIT] = "unlit",
+                                                    [CDL_MODEL_MIRROR] = "mirror",
+                                                    [CDL_MODEL_DIELECTRIC] = "dielectric",
+                                                    [CDL_MODEL_DIFFUSE] = "diffuse",
+                                                    [CDL_MODEL_CONDUCTOR] = "conductor",
+                                                    [CDL_MODEL_RETROREFLECTOR] = "retroreflector",
+                                                    [CDL_MODEL_GLTF] = "gltf",
+                                                    [CDL_MODEL_INTERFACE] = "interface"};
+
+static uint64_t mesh_memory(const cdl_SceneMesh *mesh) {
+  uint64_t floats = 3 + 3 * !!mesh->normals + 4 * !!mesh->tangents + 2 * !!mesh->uv[0] +
+                    2 * !!mesh->uv[1] + 4 * !!mesh->colors;
+  return 4 * floats * mesh->vertex_count + 12 * (uint64_t)mesh->triangle_count;
+}
+
+static uint64_t image_memory(const cdl_Image *image) {
+  if (!image) return 0;
+  uint64_t values = (uint64_t)image->width * (uint64_t)image->height * (uint64_t)image->channels;
+  return image->f32 ? 4 * values : values;
+}
+
+static Totals count(const struct cdl_Scene *scene) {
+  Totals totals = {0};
+  for (uint32_t i = 0; i < scene->mesh_count; i++) {
+    totals.unique_triangles += scene->meshes[i].triangle_count;
+    totals.memory += mesh_memory(&scene->meshes[i]);
+  }
+  for (uint32_t i = 0; i < scene->image_count; i++) totals.memory += image_memory(scene->images[i]);
+  totals.memory += (uint64_t)scene->instance_count * sizeof *scene->instances;
+  for (uint32_t i = 0; i < scene->instance_count; i++) {
+    const cdl_SceneMesh *mesh = &scene->meshes[scene->instances[i].mesh];
+    const float *e = scene->materials[mesh->material].emission;
+    totals.triangles += mesh->triangle_count;
+    totals.emissive += e[0] > 0 || e[1] > 0 || e[2] > 0;
+  }
+  return totals;
+}
+
+static uint32_t light_total(const struct cdl_Scene *scene, const Totals *totals) {
+  return scene->light_count + totals->emissive + (uint32_t)scene->environment.present;
+}
+
+static json_t *json_of_materials(const struct cdl_Scene *scene) {
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < scene->material_count; i++)
+    json_array_append_new(list, json_pack("{s:s, s:s}", "name", scene->materials[i].name, "model",
+                                          models[scene->materials[i].model]));
+  return list;
+}
+
+static json_t *json_of_cameras(const struct cdl_Scene *scene) {
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < scene->camera_count; i++)
+    json_array_append_new(
+        list, json_pack("{s:s, s:s}", "name", scene->cameras[i].name, "type",
+                        scene->cameras[i].orthographic ? "orthographic" : "perspective"));
+  return list;
+}
+
+static json_t *json_of_extensions(const struct cdl_Scene *scene) {
+  json_t *lists[3] = {json_array(), json_array(), json_array()};
+  for (uint32_t i = 0; i < scene->extension_count; i++)
+    json_array_append_new(lists[scene->extensions[i].state],
+                          json_string(scene->extensions[i].name));
+  return json_pack("{s:o, s:o, s:o}", "used", lists[CDL_EXTENSION_USED], "ignored",
+                   lists[CDL_EXTENSION_IGNORED], "unsupported", lists[CDL_EXTENSION_UNSUPPORTED]);
+}
+
+static json_t *json_of_bounds(const struct cdl_Scene *scene) {
+  const float(*b)[3] = scene->bounds;
+  if (b[0][0] > b[1][0]) return json_null();
+  return json_pack("[[f, f, f], [f, f, f]]", b[0][0], b[0][1], b[0][2], b[1][0], b[1][1], b[1][2]);
+}
+
+static cdl_Status print_json(const struct cdl_Scene *scene, const Totals *totals) {
+  json_t *root = json_pack(
+      "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:I, s:I, s:o, s:o, "
+      "s:I, s:f}",
+      "scene", scene->path, "sha256", scene->sha256, "meshes", (json_int_t)scene->mesh_count,
+      "triangles", (json_int_t)totals->triangles, "unique_triangles",
+      (json_int_t)totals->unique_triangles, "instances", (json_int_t)scene->instance_count,
+      "materials", json_of_materials(scene), "cameras", json_of_cameras(scene), "lights",
+      (json_int_t)light_total(scene, totals), "light_kinds", "punctual",
+      (json_int_t)scene->light_count, "emissive_instances", (json_int_t)totals->emissive,
+      "environment", scene->environment.present, "media", (json_int_t)scene->medium_count,
+      "textures", (json_int_t)scene->texture_count, "images", (json_int_t)scene->image_count,
+      "extensions", json_of_extensions(scene), "bounds", json_of_bounds(scene), "memory_bytes",
+      (json_int_t)totals->memory, "load_s", scene->load_s);
+  char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+  json_decref(root);
+  if (!text) return log_fail(&cli_log, CDL_BAD_INPUT, "there is not enough memory.");
+  int failed = puts(text) < 0 || fflush(stdout);
+  free(text);
+  return failed ? log_fail(&cli_log, CDL_OUTPUT, "standard output cannot be written.") : CDL_OK;
+}
+
+static void print_lights(const struct cdl_Scene *scene, const Totals *totals) {
+  printf("lights      %u punctual, %u emissive %s, ", scene->light_count, totals->emissive,
+         totals->emissive == 1 ? "shape" : "shapes");
+  if (!scene->environment.present)
+    printf("no environment\n");
+  else if (scene->environment.image == CDL_NONE)
+    printf("a constant environment\n");
+  else
+    printf("environment %s\n", scene->image_names[scene->environment.image]);
+}
+
+static void print_extensions(const struct cdl_Scene *scene) {
+  static const char *const labels[] = {"used", "ignored", "unsupported"};
+  for (int state = 0; state < 3; state++) {
+    int any = 0;
+    for (uint32_t i = 0; i < scene->extension_count; i++) {
+      if ((int)scene->extensions[i].state != state) continue;
+      if (!any++) printf("%-12s", labels[state]);
+      printf("%s%s", any > 1 ? ", " : "", scene->extensions[i].name);
+    }
+    if (any) printf("\n");
+  }
+}
+
+static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
+  const float(*b)[3] = scene->bounds;
+  printf("%s\n", scene->path);
+  printf("triangles   %llu in %u %s, %u %s (%llu unique)\n", (unsigned long long)totals->triangles,
+         scene->mesh_count, scene->mesh_count == 1 ? "mesh" : "meshes", scene->instance_count,
+         scene->instance_count == 1 ? "instance" : "instances",
+         (unsigned long long)totals->unique_triangles);
+  if (b[0][0] <= b[1][0])
+    printf("bounds      %.4g %.4g %.4g  to  %.4g %.4g %.4g m\n", b[0][0], b[0][1], b[0][2], b[1][0],
+           b[1][1], b[1][2]);
+  print_lights(scene, totals);
+  printf("media       %u%s\n", scene->medium_count,
+         scene->medium != CDL_NONE ? ", one of them fills the scene" : "");
+  printf("textures    %u on %u %s\n", scene->texture_count, scene->image_count,
+         scene->image_count == 1 ? "image" : "images");
+  printf("memory      %.1f MB, loaded in %.3f s\n", (double)totals->memory / 1e6, scene->load_s);
+  print_extensions(scene);
+  printf("cameras\n");
+  for (uint32_t i = 0; i < scene->camera_count; i++)
+    printf("  %2u  %-14s %s\n", i, scene->cameras[i].orthographic ? "orthographic" : "perspective",
+           scene->cameras[i].name);
+  printf("materials\n");
+  for (uint32_t i = 0; i < scene->material_count; i++)
+    printf("  %2u  %-14s %s\n", i, models[scene->materials[i].model], scene->materials[i].name);
+}
+
+int cli_info(int argc, char **argv) {
+  Options options = {0};
+  struct cdl_Scene *scene = NULL;
+  const cdl_SceneOptions rest = {.time = -1};
+  cli_parse(&parser, argc, argv, &options);
+  cdl_Status status = scene_load(&cli_log, options.path, &rest, &scene);
+  if (status) return status;
+  Totals totals = count(scene);
+  if (options.json)
+    status = print_json(scene, &totals);
+  else
+    print_text(scene, &totals);
+  scene_free(scene);
+  return status;
+}

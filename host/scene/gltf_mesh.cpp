@@ -1,0 +1,79 @@
+/* gltf_mesh.cpp: primitives of glTF meshes, each made into a mesh once, or once a skin. */
+#include "scene/accessor.h"
+#include "scene/gltf.h"
+
+PrimitiveSource GltfScene::primitive_source(const tinygltf::Mesh &mesh,
+                                            const tinygltf::Primitive &primitive) const {
+  auto attribute = [&](const char *name) {
+    auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? CDL_NONE : index_of(found->second);
+  };
+  PrimitiveSource source = {};
+  source.position = attribute("POSITION");
+  source.normal = attribute("NORMAL");
+  source.tangent = attribute("TANGENT");
+  source.uv[0] = attribute("TEXCOORD_0");
+  source.uv[1] = attribute("TEXCOORD_1");
+  source.color = attribute("COLOR_0");
+  source.joints = attribute("JOINTS_0");
+  source.weights = attribute("WEIGHTS_0");
+  source.indices = index_of(primitive.indices);
+  source.material = index_of(primitive.material);
+  source.mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : (uint32_t)primitive.mode;
+  source.name = mesh.name.c_str();
+  return source;
+}
+
+const std::vector<uint32_t> &GltfScene::mesh_primitives(uint32_t mesh) {
+  if (made[mesh]) return meshes[mesh];
+  for (const tinygltf::Primitive &primitive : model.meshes[mesh].primitives) {
+    PrimitiveSource source = primitive_source(model.meshes[mesh], primitive);
+    uint32_t index;
+    check(build_primitive(builder, &source, &index));
+    if (index != CDL_NONE) meshes[mesh].push_back(index);
+    if (!primitive.targets.empty())
+      document_note(builder->doc, "targets", "/meshes",
+                    "morph targets are not supported; the base shape is shown.");
+  }
+  made[mesh] = 1;
+  return meshes[mesh];
+}
+
+std::vector<Matrix> GltfScene::joint_matrices(uint32_t index) const {
+  const tinygltf::Skin &skin = model.skins[index];
+  std::vector<Matrix> joints;
+  float *inverse = nullptr;
+  if (skin.inverseBindMatrices >= 0) {
+    inverse = accessor_floats(builder->doc, (uint32_t)skin.inverseBindMatrices);
+    if (!inverse) throw std::bad_alloc();
+  }
+  joints.reserve(skin.joints.size());
+  for (size_t j = 0; j < skin.joints.size(); j++) {
+    Matrix bind = matrix_identity();
+    if (inverse) {
+      double columns[16];
+      for (int i = 0; i < 16; i++) columns[i] = inverse[16 * j + i];
+      bind = matrix_from_columns(columns);
+    }
+    joints.push_back(matrix_multiply(&world[(size_t)skin.joints[j]], &bind));
+  }
+  free(inverse);
+  return joints;
+}
+
+std::vector<uint32_t> GltfScene::skinned_primitives(uint32_t node) {
+  const tinygltf::Mesh &mesh = model.meshes[(size_t)model.nodes[node].mesh];
+  std::vector<Matrix> joints = joint_matrices((uint32_t)model.nodes[node].skin);
+  std::vector<uint32_t> made_now;
+  for (const tinygltf::Primitive &primitive : mesh.primitives) {
+    PrimitiveSource source = primitive_source(mesh, primitive);
+    uint32_t index;
+    check(build_primitive(builder, &source, &index));
+    if (index == CDL_NONE) continue;
+    if (source.joints != CDL_NONE && source.weights != CDL_NONE)
+      check(skin_mesh(builder, &source, joints.data(), (uint32_t)joints.size(),
+                      &builder->scene->meshes[index]));
+    made_now.push_back(index);
+  }
+  return made_now;
+}

@@ -1,0 +1,153 @@
+/* material.c: glTF's metallic-roughness materials and the KHR_materials_ extensions that are
+ * rendered. */
+#include <string.h>
+
+#include "scene/build.h"
+
+static cdl_SceneMaterial material_default(void) {
+  cdl_TextureRef none = texture_ref_none();
+  return (cdl_SceneMaterial){.model = CDL_MODEL_GLTF,
+                             .alpha_cutoff = 0.5f,
+                             .base = {1, 1, 1, 1},
+                             .metallic = 1,
+                             .roughness = 1,
+                             .ior = 1.5f,
+                             .normal_scale = 1,
+                             .medium = CDL_NONE,
+                             .base_texture = none,
+                             .metallic_roughness_texture = none,
+                             .alpha_texture = none,
+                             .normal_texture = none,
+                             .emission_texture = none,
+                             .transmission_texture = none};
+}
+
+static cdl_Status read_pbr(Builder *builder, const char *at, const json_t *pbr,
+                           cdl_SceneMaterial *material) {
+  json_get_numbers(pbr, "baseColorFactor", 4, material->base);
+  material->metallic = (float)json_get_number(pbr, "metallicFactor", 1);
+  material->roughness = (float)json_get_number(pbr, "roughnessFactor", 1);
+  cdl_Status status = build_texture_ref(builder, at, json_object_get(pbr, "baseColorTexture"),
+                                        &material->base_texture);
+  if (status) return status;
+  return build_texture_ref(builder, at, json_object_get(pbr, "metallicRoughnessTexture"),
+                           &material->metallic_roughness_texture);
+}
+
+static cdl_AlphaMode alpha_mode(const char *name) {
+  return strcmp(name, "MASK") == 0    ? CDL_ALPHA_MASK
+         : strcmp(name, "BLEND") == 0 ? CDL_ALPHA_BLEND
+                                      : CDL_ALPHA_OPAQUE;
+}
+
+static cdl_Status read_core(Builder *builder, const char *at, const json_t *json,
+                            cdl_SceneMaterial *material) {
+  const json_t *normal = json_object_get(json, "normalTexture");
+  const json_t *strength = json_get_extension(json, "KHR_materials_emissive_strength");
+  float factor = (float)json_get_number(strength, "emissiveStrength", 1);
+  material->double_sided = json_is_true(json_object_get(json, "doubleSided"));
+  material->alpha_mode = alpha_mode(json_get_string(json, "alphaMode", "OPAQUE"));
+  material->alpha_cutoff = (float)json_get_number(json, "alphaCutoff", 0.5);
+  material->normal_scale = (float)json_get_number(normal, "scale", 1);
+  json_get_numbers(json, "emissiveFactor", 3, material->emission);
+  for (int c = 0; c < 3; c++) material->emission[c] *= factor;
+  cdl_Status status =
+      read_pbr(builder, at, json_object_get(json, "pbrMetallicRoughness"), material);
+  if (!status) status = build_texture_ref(builder, at, normal, &material->normal_texture);
+  if (!status)
+    status = build_texture_ref(builder, at, json_object_get(json, "emissiveTexture"),
+                               &material->emission_texture);
+  return status;
+}
+
+/* Clear and smooth glass is a dielectric of ours; thin-walled where it has no thickness
+ * (KHR_materials_transmission without KHR_materials_volume). What is rough, partly opaque or
+ * metallic stays with the plain material: its transmission is not supported. */
+static cdl_Status map_transmission(Builder *builder, uint32_t index, const json_t *json,
+                                   cdl_SceneMaterial *material) {
+  const json_t *volume = json_get_extension(json, "KHR_materials_volume");
+  if (material->transmission == 0) return CDL_OK;
+  int textured = material->transmission_texture.texture != CDL_NONE ||
+                 material->metallic_roughness_texture.texture != CDL_NONE;
+  if (material->transmission < 1 || material->roughness > 0 || material->metallic > 0 || textured) {
+    document_note(builder->doc, NULL, AT("/materials/%u", index),
+                  "transmission that is rough, partial, metallic or textured is not supported; "
+                  "the surface is opaque.");
+    return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
+  }
+  material->model = CDL_MODEL_DIELECTRIC;
+  material->thin = json_get_number(volume, "thicknessFactor", 0) <= 0;
+  return CDL_OK;
+}
+
+static cdl_Status read_khr(Builder *builder, uint32_t index, const json_t *json,
+                           cdl_SceneMaterial *material) {
+  const char *at = AT("/materials/%u", index);
+  const json_t *transmission = json_get_extension(json, "KHR_materials_transmission");
+  const json_t *volume = json_get_extension(json, "KHR_materials_volume");
+  material->ior = (float)json_get_number(json_get_extension(json, "KHR_materials_ior"), "ior", 1.5);
+  material->transmission = (float)json_get_number(transmission, "transmissionFactor", 0);
+  cdl_Status status =
+      build_texture_ref(builder, at, json_object_get(transmission, "transmissionTexture"),
+                        &material->transmission_texture);
+  if (!status) status = map_transmission(builder, index, json, material);
+  if (!status && volume && material->model == CDL_MODEL_DIELECTRIC && !material->thin)
+    status = build_volume(builder, volume, &material->medium);
+  if (json_get_extension(json, "KHR_materials_unlit")) material->model = CDL_MODEL_UNLIT;
+  return status;
+}
+
+/* Extensions that change how light behaves and are not rendered are named, with the material. */
+static void note_unsupported(Builder *builder, uint32_t index, const json_t *json) {
+  const char *name;
+  json_t *value;
+  json_object_foreach(json_object_get(json, "extensions"), name, value) {
+    cdl_ExtensionState state;
+    extension_state(name, &state);
+    if (state == CDL_EXTENSION_UNSUPPORTED)
+      document_note(builder->doc, name, AT("/materials/%u/extensions/%s", index, name),
+                    "the extension %s is not supported; it is left out.", name);
+  }
+}
+
+static cdl_Status build_material(Builder *builder, uint32_t index, const json_t *json) {
+  struct cdl_Scene *scene = builder->scene;
+  cdl_SceneMaterial material = material_default();
+  const json_t *medium = json_get_extension(json, "CDL_medium");
+  const json_t *cdl = json_get_extension(json, "CDL_material");
+  cdl_Status status = read_core(builder, AT("/materials/%u", index), json, &material);
+  if (!status) status = read_khr(builder, index, json, &material);
+  if (!status && cdl) status = build_cdl_material(builder, index, cdl, &material);
+  if (!status && medium)
+    status = build_medium(builder, AT("/materials/%u/extensions/CDL_medium", index), medium,
+                          &material.medium);
+  if (status) return status;
+  note_unsupported(builder, index, json);
+  cdl_SceneMaterial *slot =
+      array_push((void **)&scene->materials, scene->material_count, sizeof *slot);
+  material.name = slot ? string_copy(json_get_string(json, "name", "")) : NULL;
+  if (!material.name) return document_out_of_memory(builder->doc);
+  *slot = material;
+  scene->material_count++;
+  return CDL_OK;
+}
+
+cdl_Status build_materials(Builder *builder) {
+  const json_t *list = json_object_get(builder->doc->root, "materials");
+  cdl_Status status = CDL_OK;
+  for (uint32_t i = 0; i < json_array_size(list) && !status; i++)
+    status = build_material(builder, i, json_array_get(list, i));
+  return status;
+}
+
+uint32_t build_default_material(Builder *builder) {
+  struct cdl_Scene *scene = builder->scene;
+  if (builder->default_material != CDL_NONE) return builder->default_material;
+  cdl_SceneMaterial *slot =
+      array_push((void **)&scene->materials, scene->material_count, sizeof *slot);
+  char *name = slot ? string_copy("default") : NULL;
+  if (!name) return CDL_NONE;
+  *slot = material_default();
+  slot->name = name;
+  return builder->default_material = scene->material_count++;
+}

@@ -1,0 +1,69 @@
+/* medium.c: what fills a surface or the scene. */
+#include <math.h>
+#include <string.h>
+
+#include "scene/build.h"
+
+static cdl_Status add_medium(Builder *builder, const cdl_SceneMedium *medium, uint32_t *index) {
+  struct cdl_Scene *scene = builder->scene;
+  cdl_SceneMedium *slot = array_push((void **)&scene->media, scene->medium_count, sizeof *slot);
+  if (!slot) return document_out_of_memory(builder->doc);
+  *slot = *medium;
+  *index = scene->medium_count++;
+  return CDL_OK;
+}
+
+static cdl_Status read_phase(Builder *builder, const char *pointer, const json_t *json,
+                             cdl_SceneMedium *medium) {
+  const char *type = json_get_string(json, "type", "isotropic");
+  if (strcmp(type, "hg") == 0) {
+    medium->phase = CDL_PHASE_HG;
+    medium->g = (float)json_get_number(json, "g", 0);
+    return CDL_OK;
+  }
+  if (strcmp(type, "isotropic") == 0) return CDL_OK;
+  document_note(builder->doc, NULL, pointer,
+                "the phase function %s is not supported; the medium scatters isotropically.", type);
+  return extension_mark(builder, "CDL_medium", CDL_EXTENSION_UNSUPPORTED);
+}
+
+cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json,
+                        uint32_t *index) {
+  cdl_SceneMedium medium = {.phase = CDL_PHASE_ISOTROPIC};
+  *index = CDL_NONE;
+  if (json_object_get(json, "grid")) {
+    document_note(builder->doc, NULL, pointer,
+                  "a medium with a grid is not supported; nothing fills the surface.");
+    return extension_mark(builder, "CDL_medium", CDL_EXTENSION_UNSUPPORTED);
+  }
+  cdl_Status status = read_phase(builder, pointer, json_object_get(json, "phase"), &medium);
+  if (status) return status;
+  json_get_numbers(json, "absorption", 3, medium.absorption);
+  json_get_numbers(json, "scattering", 3, medium.scattering);
+  json_get_numbers(json, "emission", 3, medium.emission);
+  float scale = (float)json_get_number(json, "scale", 1);
+  for (int c = 0; c < 3; c++) {
+    medium.absorption[c] *= scale;
+    medium.scattering[c] *= scale;
+    if (!isfinite(medium.absorption[c] + medium.scattering[c]))
+      return document_fail(builder->doc, pointer, "VALUE_NOT_IN_RANGE",
+                           "scale times the coefficients is beyond single precision.");
+  }
+  return add_medium(builder, &medium, index);
+}
+
+/* KHR_materials_volume: attenuationColor is what is left after attenuationDistance, so that
+ * sigma_a = -ln(colour) / distance. A black channel is taken as 1e-6: it has no logarithm. */
+cdl_Status build_volume(Builder *builder, const json_t *volume, uint32_t *index) {
+  cdl_SceneMedium medium = {.phase = CDL_PHASE_ISOTROPIC};
+  float colour[3] = {1, 1, 1}, most = 0;
+  double distance = json_get_number(volume, "attenuationDistance", INFINITY);
+  *index = CDL_NONE;
+  json_get_numbers(volume, "attenuationColor", 3, colour);
+  for (int c = 0; c < 3; c++) {
+    double sigma = -log(fmax(colour[c], 1e-6)) / fmax(distance, 1e-30);
+    medium.absorption[c] = (float)fmin(sigma, 1e30);
+    most = fmaxf(most, medium.absorption[c]);
+  }
+  return most > 0 ? add_medium(builder, &medium, index) : CDL_OK;
+}

@@ -1,0 +1,29 @@
+/* mesh.h: a glTF primitive as a triangle mesh. */
+#ifndef CANDELA_SCENE_MESH_H
+#define CANDELA_SCENE_MESH_H
+
+#include "scene/build.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Where a primitive's data lie: accessors, CDL_NONE where absent. */
+typedef struct PrimitiveSource {
+  uint32_t position, normal, tangent, uv[2], color, joints, weights, indices;
+  uint32_t material; /* glTF's index, or CDL_NONE: the default */
+  uint32_t mode;     /* GL primitive mode */
+  const char *name;
+} PrimitiveSource;
+
+/* Adds a mesh to the scene; *mesh is CDL_NONE where the primitive has no triangles. */
+cdl_Status build_primitive(Builder *builder, const PrimitiveSource *primitive, uint32_t *mesh);
+
+/* skin.c: moves a mesh's vertices by `joint_count` matrices (joint to world after inverse bind). */
+cdl_Status skin_mesh(Builder *builder, const PrimitiveSource *primitive, const Matrix *joints,
+                     uint32_t joint_count, cdl_SceneMesh *mesh);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,160 @@
+/* scene.c: from a path to a scene, and its end. */
+#include "scene/scene.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/clock.h"
+#include "core/hash.h"
+#include "scene/build.h"
+#include "scene/check.h"
+
+char *string_copy(const char *text) { return strdup(text ? text : ""); }
+
+void *array_push(void **array, uint32_t count, size_t size) {
+  /* Capacities are powers of two: only then must the array grow. */
+  if ((count & (count - 1)) == 0) {
+    size_t room = count ? 2 * (size_t)count : 1;
+    void *more = realloc(*array, room * size);
+    if (!more) return NULL;
+    *array = more;
+  }
+  return memset((char *)*array + count * size, 0, size);
+}
+
+static uint32_t *none_map(const json_t *list) {
+  size_t count = json_array_size(list) + 1;
+  uint32_t *map = malloc(count * sizeof *map);
+  if (map) memset(map, 0xff, count * sizeof *map);
+  return map;
+}
+
+static uint32_t scene_index(const Document *doc) {
+  uint32_t index = json_get_index(doc->root, "scene");
+  if (index != DOCUMENT_NONE) return index;
+  return json_object_get(doc->root, "scenes") ? 0 : DOCUMENT_NONE;
+}
+
+static int emits(const struct cdl_Scene *scene) {
+  for (uint32_t i = 0; i < scene->instance_count; i++) {
+    const float *e = scene->materials[scene->meshes[scene->instances[i].mesh].material].emission;
+    if (e[0] > 0 || e[1] > 0 || e[2] > 0) return 1;
+  }
+  for (uint32_t i = 0; i < scene->medium_count; i++) {
+    const float *e = scene->media[i].emission;
+    if (e[0] > 0 || e[1] > 0 || e[2] > 0) return 1;
+  }
+  return 0;
+}
+
+/* What a file leaves open: a light, and a camera. */
+static cdl_Status complete_scene(Builder *builder) {
+  struct cdl_Scene *scene = builder->scene;
+  if (!scene->environment.present && scene->light_count == 0 && !emits(scene)) {
+    scene->environment = (cdl_SceneEnvironment){
+        .present = 1, .image = CDL_NONE, .radiance = {1, 1, 1}, .strength = 1};
+    document_note(builder->doc, NULL, "",
+                  "the scene has no light; a neutral environment of radiance 1 is put around it.");
+  }
+  if (scene->camera_count > 0) return CDL_OK;
+  cdl_SceneCamera *camera = array_push((void **)&scene->cameras, 0, sizeof *camera);
+  if (!camera || !(camera->name = string_copy("framing")))
+    return document_out_of_memory(builder->doc);
+  scene_frame_camera(scene->bounds, camera);
+  scene->camera_count = 1;
+  return CDL_OK;
+}
+
+static cdl_Status build_scene(Builder *builder) {
+  Document *doc = builder->doc;
+  uint32_t index = scene_index(doc);
+  cdl_Status status = build_extensions(builder);
+  if (!status) status = build_materials(builder);
+  if (!status && index != DOCUMENT_NONE)
+    status = build_scene_extensions(builder, index,
+                                    json_array_get(json_object_get(doc->root, "scenes"), index));
+  if (!status) status = gltf_build(builder);
+  if (!status) status = build_images(builder);
+  if (!status) status = complete_scene(builder);
+  if (!status) hash_hex(&doc->hash, builder->scene->sha256);
+  return status;
+}
+
+static cdl_Status convert(Document *doc, const cdl_SceneOptions *options, struct cdl_Scene **out) {
+  Builder builder = {.doc = doc,
+                     .scene = calloc(1, sizeof *builder.scene),
+                     .time = options ? options->time : -1,
+                     .texture_map = none_map(json_object_get(doc->root, "textures")),
+                     .image_map = none_map(json_object_get(doc->root, "images")),
+                     .default_material = CDL_NONE};
+  cdl_Status status = CDL_BAD_INPUT;
+  if (!builder.scene || !builder.texture_map || !builder.image_map) {
+    status = document_out_of_memory(doc);
+    goto done;
+  }
+  builder.scene->medium = CDL_NONE;
+  builder.scene->path = string_copy(doc->path);
+  for (int c = 0; c < 3; c++)
+    builder.scene->bounds[0][c] = INFINITY, builder.scene->bounds[1][c] = -INFINITY;
+  status = build_scene(&builder);
+done:
+  free(builder.texture_map);
+  free(builder.image_map);
+  free(builder.image_sources);
+  if (!status)
+    *out = builder.scene;
+  else
+    scene_free(builder.scene);
+  return status;
+}
+
+cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptions *options,
+                      struct cdl_Scene **scene) {
+  Document doc;
+  double start = clock_now();
+  cdl_Status status = document_open(log, path, &doc);
+  if (!status) status = check_document(&doc);
+  if (!status) status = convert(&doc, options, scene);
+  document_close(&doc);
+  if (!status) (*scene)->load_s = clock_now() - start;
+  return status;
+}
+
+static void free_mesh(cdl_SceneMesh *mesh) {
+  free(mesh->positions);
+  free(mesh->normals);
+  free(mesh->tangents);
+  free(mesh->uv[0]);
+  free(mesh->uv[1]);
+  free(mesh->colors);
+  free(mesh->indices);
+  free(mesh->name);
+}
+
+void scene_free(struct cdl_Scene *scene) {
+  if (!scene) return;
+  for (uint32_t i = 0; i < scene->mesh_count; i++) free_mesh(&scene->meshes[i]);
+  for (uint32_t i = 0; i < scene->material_count; i++) free(scene->materials[i].name);
+  for (uint32_t i = 0; i < scene->image_count; i++) {
+    image_free(scene->images[i]);
+    free(scene->image_names[i]);
+  }
+  for (uint32_t i = 0; i < scene->light_count; i++) free(scene->lights[i].name);
+  for (uint32_t i = 0; i < scene->camera_count; i++) free(scene->cameras[i].name);
+  for (uint32_t i = 0; i < scene->extension_count; i++) free(scene->extensions[i].name);
+  for (uint32_t i = 0; i < scene->object_count; i++) free(scene->object_names[i]);
+  free(scene->meshes);
+  free(scene->instances);
+  free(scene->materials);
+  free(scene->textures);
+  free(scene->images);
+  free(scene->image_names);
+  free(scene->lights);
+  free(scene->cameras);
+  free(scene->media);
+  free(scene->extensions);
+  free(scene->object_names);
+  free(scene->path);
+  free(scene);
+}
