@@ -110,7 +110,7 @@ CDL_INLINE float offset_coordinate(float p, float n) {
   uint step = (uint)(int)(256.0f * n);
   uint bits = as_uint(p);
   float moved = as_float((bits >> 31) != 0u ? bits - step : bits + step);
-  return math_abs(p) < 0.03125f ? fma(n, 1.52587891e-5f, p) : moved;
+  return math_abs(p) < 0.03125f ? p + n * 1.52587891e-5f : moved;
 }
 
 /* Moves a point computed on a surface off it along unit normal n, so that a ray from there does not

@@ -1,4 +1,5 @@
-#include "tests/device/harness.h"
+#define _GNU_SOURCE /* nftw, mkdtemp */
+#include "harness.h"
 
 #include <stdarg.h>
 #include <setjmp.h>

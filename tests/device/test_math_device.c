@@ -6,16 +6,17 @@
 #include <stdint.h>
 #include <cmocka.h>
 
-#include <stdio.h>
-#include <stdlib.h>
+#include "lib/math.h"
+#include "compare.h"
+#include "harness.h"
 
-#include "kernels/lib/math.h"
-#include "tests/device/harness.h"
+COMPARE_SHARED(
+    pick_turns, CDL_INLINE float pick_turns(float a, int cosine) {
+      float s, c;
+      math_sincos_2pi(a, &s, &c);
+      return cosine ? c : s;
+    })
 
-enum { ITEMS = 1 << 20 };
-
-/* name, largest |argument|, expression of a and b: compiled for the host and, as text, for the
- * device */
 #define CASES(X)                                                                                   \
   X(turns_sin, 1048576.0f, pick_turns(a, 0))                                                       \
   X(turns_cos, 1048576.0f, pick_turns(a, 1))                                                       \
@@ -51,109 +52,20 @@ enum { ITEMS = 1 << 20 };
   X(max, INFINITY, math_max(a, b))                                                                 \
   X(sign, INFINITY, math_mulsign(math_sign(a), b))
 
-#define PICK_TURNS                                                                                 \
-  "CDL_INLINE float pick_turns(float a, int cosine) {\n"                                           \
-  "  float s, c;\n"                                                                                \
-  "  math_sincos_2pi(a, &s, &c);\n"                                                                \
-  "  return cosine ? c : s;\n"                                                                     \
-  "}\n"
+CASES(COMPARE_HOST)
 
-static float pick_turns(float a, int cosine) {
-  float s, c;
-  math_sincos_2pi(a, &s, &c);
-  return cosine ? c : s;
-}
-
-#define KERNEL_TEXT(name, limit, expression)                                                       \
-  "__kernel void test_" #name "(__global const float *as, __global const float *bs,\n"             \
-  "                             __global float *results) {\n"                                      \
-  "  size_t i = get_global_id(0);\n"                                                               \
-  "  float a = as[i], b = bs[i];\n"                                                                \
-  "  (void)b;\n"                                                                                   \
-  "  results[i] = " #expression ";\n"                                                              \
-  "}\n"
-
-#define HOST_FUNCTION(name, limit, expression)                                                     \
-  static float host_##name(float a, float b) {                                                     \
-    (void)b;                                                                                       \
-    return expression;                                                                             \
-  }
-CASES(HOST_FUNCTION)
-
-typedef struct Case {
-  const char *kernel;
-  float limit;
-  float (*host)(float, float);
-} Case;
-
-#define CASE_ROW(name, limit, expression) {"test_" #name, limit, host_##name},
-static const Case cases[] = {CASES(CASE_ROW)};
-
-static const char source[] = "#include \"lib/math.h\"\n" PICK_TURNS CASES(KERNEL_TEXT);
-
-static uint hash(uint x) {
-  x = (x ^ (x >> 16)) * 0x7feb352du;
-  x = (x ^ (x >> 15)) * 0x846ca68bu;
-  return x ^ (x >> 16);
-}
-
-/* Every fourth value is spread evenly over [-limit, limit], the others over all bit patterns;
- * never a NaN. */
-static float make_input(uint i, float limit) {
-  uint u = hash(i);
-  float even = ((float)(u >> 8) / 8388608.0f - 1.0f) * (limit > 1e30f ? 1e3f : limit);
-  float wild = as_float(u);
-  int usable = wild == wild && math_abs(wild) <= limit;
-  return (i & 3u) == 0u || !usable ? even : wild;
-}
-
-static int same_bits(float a, float b) { return as_uint(a) == as_uint(b) || (a != a && b != b); }
-
-static size_t count_differences(Harness *harness, const Case *test, float *a, float *b, float *r) {
-  for (uint i = 0; i < ITEMS; i++) {
-    a[i] = make_input(2u * i, test->limit);
-    b[i] = make_input(2u * i + 1u, test->limit);
-    r[i] = -1.0f;
-  }
-  const HarnessBuffer buffers[] = {{a, ITEMS * 4}, {b, ITEMS * 4}, {r, ITEMS * 4}};
-  harness_run(harness, test->kernel, ITEMS, buffers, 3);
-  size_t differences = 0;
-  for (uint i = 0; i < ITEMS; i++) {
-    float want = test->host(a[i], b[i]);
-    if (same_bits(r[i], want)) continue;
-    if (differences++ == 0)
-      print_message("  %s(%a, %a): device %a, host %a\n", test->kernel, (double)a[i], (double)b[i],
-                    (double)r[i], (double)want);
-  }
-  return differences;
-}
-
-static void compare_on(const char *platform) {
-  Harness *harness = harness_open(platform);
-  if (!harness) {
-    print_message("  skipped: no device of platform %s\n", platform ? platform : "(any)");
-    skip();
-  }
-  print_message("  %s\n", harness_name(harness));
-  harness_build(harness, source);
-  float *values = malloc(3 * ITEMS * sizeof *values);
-  assert_non_null(values);
-  size_t total = 0;
-  for (size_t i = 0; i < sizeof cases / sizeof *cases; i++)
-    total += count_differences(harness, &cases[i], values, values + ITEMS, values + 2 * ITEMS);
-  free(values);
-  harness_close(harness);
-  assert_int_equal(total, 0);
-}
+static const CompareCase cases[] = {CASES(COMPARE_ROW)};
+static const char *const source[] = {"#include \"lib/math.h\"\n", pick_turns_text,
+                                     CASES(COMPARE_KERNEL), NULL};
 
 static void first_device_matches_host(void **state) {
   (void)state;
-  compare_on(NULL);
+  compare_on(NULL, source, cases, sizeof cases / sizeof *cases);
 }
 
 static void rusticl_matches_host(void **state) {
   (void)state;
-  compare_on("rusticl");
+  compare_on("rusticl", source, cases, sizeof cases / sizeof *cases);
 }
 
 int main(void) {
