@@ -35,7 +35,7 @@ clean:
 
 # --- How things are compiled.
 
-PACKAGES := OpenImageIO jansson nettle OpenCL tinygltf
+PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf
 NEEDS_COMPILER := $(filter-out deps demo test bench check soak clean,$(or $(MAKECMDGOALS),all))
 ifneq ($(NEEDS_COMPILER),)
 PACKAGE_CFLAGS := $(shell pkg-config --cflags $(PACKAGES))

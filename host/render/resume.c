@@ -1,0 +1,63 @@
+/* Sessions to and from checkpoints. */
+#include "render/checkpoint.h"
+#include "render/job.h"
+#include "render/session.h"
+
+#include "core/log.h"
+
+static json_t *state_json(const cdl_Session *session) {
+  const cdl_RenderStats *s = &session->stats;
+  return json_pack("{s:i, s:i, s:f, s:f, s:I, s:I, s:I, s:I, s:I}", "next_block",
+                   (int)session->next_block, "next_pixel", (int)session->next_pixel, "render_s",
+                   s->render_s, "render_cpu_s", s->render_cpu_s, "paths", (json_int_t)s->paths,
+                   "rays_camera", (json_int_t)s->rays_camera, "rays_bounce",
+                   (json_int_t)s->rays_bounce, "rays_shadow", (json_int_t)s->rays_shadow,
+                   "bad_samples", (json_int_t)s->bad_samples);
+}
+
+static uint64_t count(const json_t *state, const char *name) {
+  return (uint64_t)json_integer_value(json_object_get(state, name));
+}
+
+static void state_apply(cdl_Session *session, const json_t *state) {
+  cdl_RenderStats *s = &session->stats;
+  session->next_block = job_integer(state, "next_block");
+  session->next_pixel = job_integer(state, "next_pixel");
+  s->render_s = json_number_value(json_object_get(state, "render_s"));
+  s->render_cpu_s = json_number_value(json_object_get(state, "render_cpu_s"));
+  s->paths = count(state, "paths");
+  s->rays_camera = count(state, "rays_camera");
+  s->rays_bounce = count(state, "rays_bounce");
+  s->rays_shadow = count(state, "rays_shadow");
+  s->bad_samples = count(state, "bad_samples");
+}
+
+/* The job of a checkpoint has the range of samples as well: the film holds those blocks. */
+static cdl_Status checkpoint_job(const cdl_Session *session, json_t **job) {
+  cdl_Status status = job_of_session(session, job);
+  if (status) return status;
+  json_object_set_new(*job, "first_sample", json_integer(session->settings.first_sample));
+  json_object_set_new(*job, "sample_count", json_integer(session->settings.sample_count));
+  return CDL_OK;
+}
+
+cdl_Status cdl_session_save(cdl_Session *session, const char *path) {
+  json_t *job = NULL, *state = NULL;
+  cdl_Status status = checkpoint_job(session, &job);
+  if (status) return status;
+  state = state_json(session);
+  status = checkpoint_write(session->log, path, job, state, session->film);
+  json_decref(state);
+  json_decref(job);
+  return status;
+}
+
+cdl_Status cdl_session_resume(cdl_Session *session, const char *path) {
+  json_t *job = NULL, *state = NULL;
+  cdl_Status status = checkpoint_job(session, &job);
+  if (!status) status = checkpoint_read(session->log, path, job, session->film, &state);
+  if (!status) state_apply(session, state);
+  json_decref(state);
+  json_decref(job);
+  return status;
+}
