@@ -9,11 +9,13 @@
 #include "lib/vec.h"
 
 /* The concentric map of the square to the unit disk (Shirley and Chiu 1997) without branches:
- * radius signed, angle as (cosine, sine). x = radius cosine, y = radius sine. */
+ * radius signed, angle as (cosine, sine). x = radius cosine, y = radius sine. a and b are made in
+ * unlike ways, with the same results, because compilers pack like operations on two floats into a
+ * vector, which stops PoCL's loop vectoriser. */
 CDL_INLINE float sample_disk_polar(float u, float v, float *cosine, float *sine) {
   float a = fma(2.0f, u, -1.0f);
-  float b = fma(2.0f, v, -1.0f);
-  int wide = math_abs(a) > math_abs(b);
+  float b = (v - 0.5f) + (v - 0.5f);
+  int wide = (a - b) * (a + b) > 0.0f; /* |a| > |b| */
   float radius = wide ? a : b;
   float eighth = 0.125f * (wide ? b : a) / (radius == 0.0f ? 1.0f : radius);
   math_sincos_2pi(wide ? eighth : 0.25f - eighth, sine, cosine);
