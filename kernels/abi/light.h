@@ -9,6 +9,10 @@
 #define CDL_LIGHT_DIRECTIONAL 2u
 #define CDL_LIGHT_ENVIRONMENT 3u
 
+/* cdl_Light.flags of a triangle */
+#define CDL_LIGHT_DOUBLE_SIDED 1u /* emits from both sides */
+#define CDL_LIGHT_MIRRORED 2u     /* the front is at -(e1 x e2): its instance mirrors it */
+
 /* A light. Triangles: corner p, edges e1 and e2 in the world, e1 x e2 to the front. Points: position p,
  * axis e1 (unit, where a spot shines). Directional: e1 is where the light goes, unit. */
 typedef struct cdl_Light {
@@ -21,7 +25,7 @@ typedef struct cdl_Light {
   float e1[3];
   float range; /* of a point, m; 0: unlimited */
   float e2[3];
-  uint double_sided;  /* a triangle that emits from both sides */
+  uint flags;         /* CDL_LIGHT_DOUBLE_SIDED, CDL_LIGHT_MIRRORED */
   float radiance[3];  /* triangle: radiance; point: intensity, W/sr; directional: irradiance, W/m2 */
   float cone_scale;   /* KHR_lights_punctual: clamp(cos scale + offset)^2; 0 and 1: no cone */
   float cone_offset;

@@ -14,7 +14,7 @@ CDL_INLINE vec3 roulette(CDL_CONSTANT cdl_Params *params, uint depth, vec3 throu
   float survival = math_min(v3_max(throughput), CDL_ROULETTE_MOST);
   int plays = depth >= params->roulette_depth;
   int survives = (chance < survival) | !plays;
-  float scale = plays & (survival > 0.0f) ? 1.0f / survival : 1.0f;
+  float scale = (plays & (survival > 0.0f)) ? 1.0f / survival : 1.0f;
   return v3_scale(throughput, survives ? scale : 0.0f);
 }
 

@@ -25,9 +25,10 @@ CDL_INLINE LightSample light_triangle_sample(CDL_GLOBAL const cdl_Light *light, 
   vec3 to_light = v3_sub(point, position);
   float distance = v3_length(to_light);
   vec3 direction = v3_normalize(to_light);
-  float cosine = -v3_dot(direction, v3_normalize(v3_cross(e1, e2)));
+  float outward = v3_dot(direction, v3_normalize(v3_cross(e1, e2)));
+  float cosine = light->flags & CDL_LIGHT_MIRRORED ? outward : -outward;
   float pdf = light_triangle_pdf(light, distance, cosine);
-  int lit = pdf > 0.0f && (cosine > 0.0f || light->double_sided);
+  int lit = pdf > 0.0f && (cosine > 0.0f || (light->flags & CDL_LIGHT_DOUBLE_SIDED) != 0u);
   vec3 weight = v3_scale(radiance, lit ? 1.0f / pdf : 0.0f);
   return light_sample_make(direction, distance, weight, pdf);
 }

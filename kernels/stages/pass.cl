@@ -25,7 +25,7 @@ __kernel void pass(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
   MediaStack crossed =
       media_crossed(before, materials[material].medium, (vertex & CDL_VERTEX_FRONT) != 0u);
   int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
-  int alive = (v3_max(throughput) > 0.0f) & (counts_vertex(counts) < params->pass_limit);
+  int alive = v3_max(throughput) > 0.0f && (counts_vertex(counts) < params->pass_limit);
 
   state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, v3_neg(normal)));
   state_set_float(path, CDL_PATH_TRAVELLED, stride, i, travelled);

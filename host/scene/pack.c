@@ -1,0 +1,73 @@
+#include "scene/pack.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/log.h"
+#include "scene/pack_parts.h"
+
+void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size) {
+  void *array = calloc(count ? count : 1, size);
+  if (!array)
+    log_fail(log, CDL_BAD_INPUT, "not enough memory for %zu %s; use a machine with more", count,
+             what);
+  return array;
+}
+
+double pack_scene_radius(const cdl_Pack *pack) {
+  const float *b = pack->bvh.bounds;
+  if (!(b[0] <= b[3])) return 1.0;
+  double x = (double)b[3] - b[0], y = (double)b[4] - b[1], z = (double)b[5] - b[2];
+  return 0.5 * sqrt(x * x + y * y + z * z);
+}
+
+static cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack) {
+  pack->medium_count = scene->medium_count + 1u;
+  if (pack->medium_count > 0xfffe)
+    return log_fail(log, CDL_BAD_INPUT, "%s: %u media are more than the 65533 that fit",
+                    scene->path, scene->medium_count);
+  pack->media = pack_array(log, "media", pack->medium_count, sizeof *pack->media);
+  if (!pack->media) return CDL_BAD_INPUT;
+  for (uint32_t i = 0; i < scene->medium_count; i++) {
+    const cdl_SceneMedium *from = &scene->media[i];
+    cdl_Medium *to = &pack->media[i + 1]; /* 0 is vacuum */
+    memcpy(to->absorption, from->absorption, sizeof to->absorption);
+    memcpy(to->scattering, from->scattering, sizeof to->scattering);
+    memcpy(to->emission, from->emission, sizeof to->emission);
+    to->g = from->phase == CDL_PHASE_HG ? from->g : 0.0f;
+    to->emissive = from->emission[0] > 0 || from->emission[1] > 0 || from->emission[2] > 0;
+  }
+  pack->scene_medium = scene->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : scene->medium + 1u;
+  pack->features.media = scene->medium_count > 0;
+  return CDL_OK;
+}
+
+cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack) {
+  double environment_power = 0.0;
+  memset(pack, 0, sizeof *pack);
+  cdl_Status status = pack_textures(log, scene, pack);
+  if (!status) status = pack_materials(log, scene, pack);
+  if (!status) status = pack_media(log, scene, pack);
+  if (!status) status = pack_geometry(log, scene, bvh_width, pack);
+  if (!status) status = pack_environment(log, scene, pack, &environment_power);
+  if (!status) status = pack_lights(log, scene, environment_power, pack);
+  return status;
+}
+
+void pack_free(cdl_Pack *pack) {
+  free(pack->triangles);
+  free(pack->shapes);
+  free(pack->mesh_shapes);
+  free(pack->attributes);
+  free(pack->materials);
+  free(pack->textures);
+  free(pack->texels);
+  free(pack->lights);
+  free(pack->light_table);
+  free(pack->environment);
+  free(pack->environment_cells);
+  free(pack->media);
+  bvh_free(&pack->bvh);
+  memset(pack, 0, sizeof *pack);
+}

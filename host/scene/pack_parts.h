@@ -1,0 +1,26 @@
+/* pack_parts.h: the steps of pack_scene(), in order. Each fills its part of the pack. */
+#ifndef CANDELA_SCENE_PACK_PARTS_H
+#define CANDELA_SCENE_PACK_PARTS_H
+
+#include "scene/pack.h"
+
+/* calloc that reports; NULL means failure. A count of 0 gives one zeroed element, so that kernels have
+ * something to point at. */
+void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size);
+
+cdl_Status pack_textures(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
+cdl_Status pack_materials(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
+
+/* Also numbers the lights of emissive shapes and builds the trees. */
+cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
+
+/* `power` is what a flat receiver the size of the scene gets of it, for choosing among lights. */
+cdl_Status pack_environment(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack,
+                            double *power);
+cdl_Status pack_lights(const cdl_Log *log, const cdl_Scene *scene, double environment_power,
+                       cdl_Pack *pack);
+
+/* Radius of the sphere around the world's bounds, m. */
+double pack_scene_radius(const cdl_Pack *pack);
+
+#endif
