@@ -9,6 +9,7 @@
 #define CDL_TEXTURES
 #define CDL_EMISSION_TEXTURES
 #define CDL_FLOAT_TEXTURES
+#define CDL_VERTEX_COLORS
 #include "lib/color.h"
 #include "lib/material.h"
 

@@ -65,7 +65,7 @@ CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance
   vec3 tangent = transform_direction(to_world, barycentric(t0, t1, t2, u, v));
   vec3 along = v3_select(has_tangent, tangent, v3_all(0.0f));
   s.tangent = frame_from_tangent(s.normal, along).x;
-  s.handedness = has_tangent & (handedness < 0.0f) ? -1.0f : 1.0f;
+  s.handedness = (has_tangent & (handedness < 0.0f)) ? -1.0f : 1.0f;
   return s;
 }
 

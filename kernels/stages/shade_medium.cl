@@ -35,7 +35,7 @@ __kernel void shade_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wav
   float u, v, unused, chance;
   vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
   vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &unused, &chance);
-  PhaseSample sample = phase_hg_sample.wi, g, u, v);
+  PhaseSample sample = phase_hg_sample(direction, g, u, v);
   vec3 next = roulette(params, counts_depth(counts) + 1u, throughput, chance);
   next = v3_select(scatters, next, v3_all(0.0f));
 

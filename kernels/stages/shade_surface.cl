@@ -36,9 +36,9 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   BsdfParams p = load_params(work, stride, i, material);
   vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
   vec3 geometric = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
-  Frame local = frame_from_tangent(state_vec3(work, CDL_WORK_NORMAL, stride, i),
+  Frame shading = frame_from_tangent(state_vec3(work, CDL_WORK_NORMAL, stride, i),
                                    state_vec3(work, CDL_WORK_TANGENT, stride, i));
-  vec3 wo = frame_to_local(local, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
+  vec3 wo = frame_to_local(shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
   vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
   uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
   int scatters = counts_depth(counts) < params->max_depth;
@@ -46,7 +46,7 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
 #if CDL_SHADE_LIT
   vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-  BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(local, to_light));
+  BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(shading, to_light));
   int lit = scatters & (v3_dot(to_light, geometric) > 0.0f);
   float mis = light_pdf > 0.0f ? mis_power(light_pdf, value.pdf) : 1.0f;
   vec3 direct = v3_mul(value.f_cos, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
@@ -60,7 +60,7 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
   vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
   BsdfSample sample = bsdf_sample_model(p, wo, u, v, lobe);
-  vec3 wi = frame_to_world(local, sample.wi);
+  vec3 wi = frame_to_world(shading, sample.wi);
   float side = v3_dot(wi, geometric);
   int right_side = sample.transmitted ? side < 0.0f : side > 0.0f;
   vec3 next = roulette(params, counts_depth(counts) + 1u, v3_mul(throughput, sample.weight), chance);
