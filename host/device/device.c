@@ -19,12 +19,13 @@ cdl_Status device_fail(const cdl_Device *device, const char *call, cl_int code) 
                   cl_error_name(code), code);
 }
 
-/* Drivers explain some failures only through this callback. */
+/* Drivers explain some failures only here; the call that fails reports the failure itself. Oclgrind
+ * loses the user pointer. */
 static void CL_CALLBACK context_notice(const char *text, const void *data, size_t size,
                                        void *user) {
   (void)data, (void)size;
   const cdl_Device *device = user;
-  log_warning(device->log, "%s says: %s", device->info.name, text);
+  if (device) log_note(device->log, "%s says: %s", device->info.name, text);
 }
 
 static cdl_Status open_queue(cdl_Device *device) {

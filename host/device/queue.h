@@ -18,7 +18,11 @@ void bindings_set(cdl_Bindings *bindings, const char *name, const cdl_Buffer *bu
 
 /* Enqueues work-items offset … offset + count - 1. The local size is the kernel's own
  * reqd_work_group_size, else CDL_LOCAL_SIZE (less where the device allows less); `count` is rounded
- * up to a multiple, so a kernel clamps its index. Returns before the kernel has run. */
+ * up to a multiple, so a kernel clamps its index. Returns before the kernel has run.
+ *
+ * PoCL compiles at launches: once more for a kernel's first launch with an offset, and once more
+ * for the first of 65536 items or more if the launches before it were smaller. So launch the
+ * largest range first, and prefer a base in the parameters to an offset. */
 cdl_Status device_run(cdl_Device *device, cdl_KernelId id, const cdl_Bindings *bindings,
                       size_t offset, size_t count);
 
