@@ -80,7 +80,9 @@ typedef struct MicrofacetLobe {
 
 CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   MicrofacetLobe lobe;
-  vec3 h = v3_normalize(v3_add(wo, wi));
+  vec3 sum = v3_add(wo, wi);
+  float length = v3_length(sum);
+  vec3 h = v3_scale(sum, length > 0.0f ? 1.0f / length : 0.0f);
   int above = wo.z > 0.0f && wi.z > 0.0f;
   float cos_o = math_max(wo.z, 1e-9f);
   float cos_i = math_max(wi.z, 1e-9f);
@@ -90,7 +92,7 @@ CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   float g1 = 1.0f / (1.0f + lambda_o);
   float masked = (1.0f + lambda_o) / (1.0f + lambda_o + lambda_i);
   float ratio = m.separable ? 1.0f / (1.0f + lambda_i) : masked;
-  float cos_h = math_max(v3_dot(wo, h), 1e-9f);
+  float cos_h = math_max(0.5f * length, 1e-9f); /* wo.h and wi.h alike, whatever rounds */
   float f_cos = cos_i * microfacet_product(d, g1 * ratio, 1.0f, cos_i, cos_o);
   float pdf =
       microfacet_visible_density(d, g1, cos_h, cos_o) * microfacet_half_vector_jacobian(cos_h);
