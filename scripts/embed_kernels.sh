@@ -26,6 +26,7 @@ list=$(cd "$kernels" && find . -type f \( -name '*.cl' -o -name '*.h' \) | sed '
   echo '#include "device/source.h"'
   n=0
   for path in $list; do
+    [ -z "$(tail -c 1 "$kernels/$path")" ] || { echo "$kernels/$path: no newline at its end" >&2; exit 1; }
     echo "static const char text_$n[] ="
     quote "$kernels/$path"
     echo '"";'

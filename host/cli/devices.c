@@ -62,9 +62,10 @@ static void measure(cdl_DeviceInfo *info) {
 }
 
 static const char *type_name(cl_device_type type) {
-  if (type & CL_DEVICE_TYPE_GPU) return "GPU";
-  if (type & CL_DEVICE_TYPE_CPU) return "CPU";
-  return type & CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "other";
+  type &= CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU | CL_DEVICE_TYPE_ACCELERATOR;
+  if (type == CL_DEVICE_TYPE_GPU) return "GPU";
+  if (type == CL_DEVICE_TYPE_CPU) return "CPU";
+  return type == CL_DEVICE_TYPE_ACCELERATOR ? "accelerator" : "simulator";
 }
 
 static const char *verdict(const cdl_DeviceInfo *info) {
@@ -139,9 +140,11 @@ int cli_devices(int argc, char **argv) {
   cli_parse(&parser, argc, argv, &options);
   cdl_Status status = device_list(&cli_log, &list, &count);
   if (status) return status;
-  for (size_t i = 0; i < count; i++) measure(&list[i]);
+  /* As a render chooses: by what drivers report, before anything is measured. */
   status = device_select(&cli_log, list, count, NULL, &best);
   int default_entry = status ? -1 : (int)best;
+  for (size_t i = 0; i < count; i++) measure(&list[i]);
+  if (!status) status = device_select(&cli_log, list, count, NULL, &best); /* is any left? */
   if (options.json)
     print_json(list, count, default_entry);
   else

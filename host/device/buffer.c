@@ -1,5 +1,6 @@
 #include "device/buffer.h"
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "device/internal.h"
 
@@ -130,11 +131,11 @@ cdl_Status buffer_write(cdl_Buffer *buffer, size_t offset, size_t size, const vo
   cdl_Status status = check_range(buffer, "buffer_write", offset, size);
   if (status || !size) return status;
   cl_event *ask = copy_event(buffer, &event);
-  double start = host_seconds();
+  double start = clock_now();
   cl_int code = clEnqueueWriteBuffer(buffer->device->queue, buffer->mem, CL_TRUE, offset, size,
                                      data, 0, NULL, ask);
   if (code) return buffer_fail(buffer, "clEnqueueWriteBuffer", code);
-  copy_observe(buffer->device, event, size, host_seconds() - start);
+  copy_observe(buffer->device, event, size, clock_now() - start);
   return CDL_OK;
 }
 
@@ -143,11 +144,11 @@ cdl_Status buffer_read(const cdl_Buffer *buffer, size_t offset, size_t size, voi
   cdl_Status status = check_range(buffer, "buffer_read", offset, size);
   if (status || !size) return status;
   cl_event *ask = copy_event(buffer, &event);
-  double start = host_seconds();
+  double start = clock_now();
   cl_int code = clEnqueueReadBuffer(buffer->device->queue, buffer->mem, CL_TRUE, offset, size, data,
                                     0, NULL, ask);
   if (code) return buffer_fail(buffer, "clEnqueueReadBuffer", code);
-  copy_observe(buffer->device, event, size, host_seconds() - start);
+  copy_observe(buffer->device, event, size, clock_now() - start);
   return CDL_OK;
 }
 

@@ -6,13 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <time.h>
-
-double host_seconds(void) {
-  struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
-  return now.tv_sec + 1e-9 * now.tv_nsec;
-}
 
 cdl_Status device_fail(const cdl_Device *device, const char *call, cl_int code) {
   return log_fail(device->log, CDL_DEVICE, "%s on %s: %s (%d)", call, device->info.name,

@@ -74,6 +74,4 @@ void copy_observe(cdl_Device *device, cl_event event, size_t bytes, double host)
 /* Hands finished launches to the observer; waits for all of them first if `wait`. */
 cdl_Status launches_collect(cdl_Device *device, int wait);
 
-double host_seconds(void); /* monotonic */
-
 #endif

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* asprintf */
 #include "device/program.h"
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "device/internal.h"
 #include "device/source.h"
@@ -109,12 +110,12 @@ static cdl_Status build_slot(cdl_Device *device, cdl_KernelId id) {
   KernelSlot *slot = &device->kernels[id];
   char *text = NULL;
   cl_kernel kernel = NULL;
-  double start = host_seconds();
+  double start = clock_now();
   cdl_Status status = source_flatten(device->log, row->file, &text);
   if (!status) status = build_text(device, text, row->name, row->options, &kernel);
   if (!status) status = check_arguments(device, id, kernel);
   free(text);
-  double seconds = host_seconds() - start;
+  double seconds = clock_now() - start;
   device->build_seconds += seconds;
   if (device->observed && device->observer.built)
     device->observer.built(device->observer.user, id, seconds);

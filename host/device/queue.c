@@ -1,5 +1,6 @@
 #include "device/queue.h"
 
+#include "core/clock.h"
 #include "core/log.h"
 #include "device/internal.h"
 
@@ -47,7 +48,7 @@ static cdl_Status run_alone(cdl_Device *device, cdl_KernelId id, KernelSlot *slo
   cl_event event = NULL;
   cdl_Status status = device_finish(device);
   if (status) return status;
-  double start = host_seconds();
+  double start = clock_now();
   cl_int code = enqueue(device, slot->kernel, slot->local_size, offset, count, &event);
   if (code) return launch_fail(device, id, code);
   code = clFinish(device->queue);
@@ -55,7 +56,7 @@ static cdl_Status run_alone(cdl_Device *device, cdl_KernelId id, KernelSlot *slo
     clReleaseEvent(event);
     return launch_fail(device, id, code);
   }
-  return launch_observe(device, event, id, count, host_seconds() - start, first);
+  return launch_observe(device, event, id, count, clock_now() - start, first);
 }
 
 cdl_Status device_run(cdl_Device *device, cdl_KernelId id, const cdl_Bindings *bindings,

@@ -17,14 +17,16 @@ static int contains(const char *text, const char *part) {
   return 0;
 }
 
-/* Better is higher. A GPU whose arithmetic is not known to be exact comes after every CPU: an image
- * must not change with the machine unless that was asked for. */
+/* Better is higher. A GPU whose driver does not report exact arithmetic comes after every CPU: an
+ * image must not change with the machine unless that was asked for. Simulators, which call
+ * themselves every type at once, come last. */
 static int preference(const cdl_DeviceInfo *info) {
+  cl_device_type type = info->type & (CL_DEVICE_TYPE_CPU | CL_DEVICE_TYPE_GPU);
   int exact = info->exact >= CDL_EXACT_REPORTED;
   if (!info->usable) return 0;
-  if ((info->type & CL_DEVICE_TYPE_GPU) && exact) return 4;
-  if ((info->type & CL_DEVICE_TYPE_CPU) && exact) return 3;
-  return info->type & CL_DEVICE_TYPE_CPU ? 2 : 1;
+  if (type == CL_DEVICE_TYPE_GPU && exact) return 4;
+  if (type == CL_DEVICE_TYPE_CPU) return exact ? 3 : 2;
+  return 1;
 }
 
 static cdl_Status select_best(const cdl_Log *log, const cdl_DeviceInfo *list, size_t count,

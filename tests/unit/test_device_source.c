@@ -199,6 +199,9 @@ static void selects_devices(void **state) {
   assert_int_equal(device_select(&test_log, list, 5, "7", &chosen), CDL_USAGE);
   assert_int_equal(device_select(&test_log, list, 5, "absent", &chosen), CDL_USAGE);
   assert_int_equal(device_select(&test_log, list, 2, NULL, &chosen), CDL_DEVICE);
+  list[4].type |= CL_DEVICE_TYPE_CPU; /* a simulator is never the default */
+  assert_int_equal(device_select(&test_log, list, 5, NULL, &chosen), CDL_OK);
+  assert_int_equal(chosen, 2);
   assert_int_equal(device_select(&test_log, NULL, 0, NULL, &chosen), CDL_DEVICE);
 }
 
