@@ -144,6 +144,7 @@ static void write_trees(Build *b, uint32_t *roots) {
   cdl_Bvh *bvh = b->bvh;
   Layout layout = {bvh, {0, 0}};
   bvh->root = b->width.write(&layout, &b->top, NULL);
+  if (b->top.count == 1) bvh->root = CDL_BVH_LEAF | fragment_number(b->top.fragments);
   for (uint32_t i = 0; i < b->mesh_count; i++)
     roots[i] = b->width.write(&layout, b->trees + i, b->sources + i);
   for (uint32_t i = 0; i < bvh->instance_count; i++)

@@ -69,7 +69,7 @@ typedef struct cdl_Bvh {
   cdl_BvhInstance *instances;
   size_t node_bytes, triangle_bytes, instance_bytes; /* never 0 */
   uint32_t instance_count;
-  uint32_t root;   /* node of the top level */
+  uint32_t root;   /* reference: to the top level's node, or to the only instance */
   float bounds[6]; /* of everything, in the world: min x y z, max x y z; min > max if empty */
   cdl_BvhStatistics statistics;
 } cdl_Bvh;

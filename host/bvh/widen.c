@@ -4,7 +4,7 @@
  * by level. */
 #include "bvh/layout.h"
 
-enum { WIDTH = 8, STACK_TOP = 64, STACK_BOTTOM = CDL_BVH8_STACK - STACK_TOP };
+enum { WIDTH = 8, STACK_TOP = 64, STACK_BOTTOM = CDL_BVH8_STACK - STACK_TOP - 1 };
 
 /* Subtrees of the binary tree that become the children of one node, in order of opening. */
 typedef struct Children {

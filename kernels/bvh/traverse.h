@@ -5,7 +5,7 @@
  *   int bvh_occluded(nodes, triangles, instances, root, o, d, tmax, mask)
  *
  * with CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles, CDL_GLOBAL const
- * cdl_BvhInstance *instances, uint root (of the top level), vec3 o, vec3 d, float tmax, uint mask.
+ * cdl_BvhInstance *instances, uint root (cdl_Bvh.root), vec3 o, vec3 d, float tmax, uint mask.
  *
  * A ray hits at 0 < t <= tmax, both sides of every triangle, in units of d, which need not be unit.
  * tmax may be infinite. Origins on a surface are to be offset by the caller. bvh_closest gives the
@@ -26,6 +26,8 @@
 
 #include "bvh/traverse2.h"
 #include "bvh/traverse8.h"
+
+#include "bvh/instance.h"
 
 CDL_INLINE Hit bvh_closest_after(CDL_GLOBAL const BvhNode *nodes,
                                  CDL_GLOBAL const BvhTriangle *triangles,

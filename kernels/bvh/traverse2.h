@@ -1,8 +1,7 @@
-/* traverse2.h: traversal of the two-child layout; included by traverse.h.
+/* traverse2.h: nodes and leaves of the two-child layout; included by traverse.h.
  *
- * One loop for both levels. The ray goes on into the nearer child; the farther one waits on the
- * stack with the distance at which it is entered, and is dropped unseen if a nearer hit was found
- * meanwhile. While the loop is inside an instance, entries up to `base` belong to the top level. */
+ * The ray goes on into the nearer child; the farther one waits on the stack with the distance at
+ * which it is entered, and is dropped unseen if a nearer hit was found meanwhile. */
 #ifndef CDL_BVH_TRAVERSE2_H
 #define CDL_BVH_TRAVERSE2_H
 
@@ -39,64 +38,38 @@ CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 
                  BVH_PAD_INSTANCES);
 }
 
-/* The best hit after `after`, or with `any` set just some hit. */
-CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
-                          CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                          float tmax, uint mask, Hit after, int any) {
-  uint stack[CDL_BVH_STACK];
-  float enters[CDL_BVH_STACK];
-  BvhQuery query;
-  query.best = hit_none(tmax);
-  query.after = after;
-  query.instance_enter = 0.0f;
-  query.instance = CDL_NONE;
-  BvhRay world = bvh_ray_in_world(nodes + root, o, d);
-  BvhRay ray = world;
-  if (!bvh_ray_is_usable(world)) return query.best;
-  uint top = 0u, base = 0u, current = root;
-  float enter = 0.0f;
-  int inside = 0;
-  for (;;) {
-    if ((current & CDL_BVH_LEAF) == 0u) {
-      CDL_GLOBAL const BvhNode *node = nodes + current;
-      float enter0 = bvh_box(ray, node->bounds[0], query.best.t);
-      float enter1 = bvh_box(ray, node->bounds[1], query.best.t);
-      uint near_child = enter1 < enter0 ? 1u : 0u;
-      enter = bvh_min(enter0, enter1);
-      float later = bvh_max(enter0, enter1);
-      if (enter < CDL_INFINITY) {
-        current = node->child[near_child];
-        if (later < CDL_INFINITY) {
-          stack[top] = node->child[1u - near_child];
-          enters[top++] = later;
-        }
-        continue;
-      }
-    } else if (inside) {
-      if (bvh_leaf(ray, triangles, current, &query) && any) return query.best;
-    } else {
-      CDL_GLOBAL const cdl_BvhInstance *instance = instances + (current & CDL_BVH_INDEX);
-      if ((instance->mask & mask) != 0u) {
-        ray = bvh_ray_in_instance(instance, o, d);
-        query.instance_enter = enter;
-        query.instance = current & CDL_BVH_INDEX;
-        inside = 1;
-        base = top;
-        current = instance->root;
-        if (bvh_ray_is_usable(ray)) continue;
-      }
-    }
-    do {
-      if (top == base) {
-        if (!inside || top == 0u) return query.best;
-        ray = world;
-        inside = 0;
-        base = 0u;
-      }
-      enter = enters[--top];
-      current = stack[top];
-    } while (enter > query.best.t);
-  }
+/* References that wait, and where the ray enters them. */
+typedef struct BvhStack {
+  uint child[CDL_BVH_STACK];
+  float enter[CDL_BVH_STACK];
+} BvhStack;
+
+CDL_INLINE void bvh_put(BvhStack *stack, uint top, uint child, float enter) {
+  stack->child[top] = child;
+  stack->enter[top] = enter;
+}
+
+CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit, int any,
+                          BvhStack *stack, uint *top) {
+  float enter0 = bvh_box(ray, node->bounds[0], limit);
+  float enter1 = bvh_box(ray, node->bounds[1], limit);
+  uint near_child = enter1 < enter0 ? 1u : 0u;
+  (void)any;
+  if (!(bvh_min(enter0, enter1) < CDL_INFINITY)) return CDL_NONE;
+  if (bvh_max(enter0, enter1) < CDL_INFINITY)
+    bvh_put(stack, (*top)++, node->child[1u - near_child], bvh_max(enter0, enter1));
+  return node->child[near_child];
+}
+
+CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit,
+                              BvhStack *stack, uint top) {
+  float enter0 = bvh_box(ray, node->bounds[0], limit);
+  float enter1 = bvh_box(ray, node->bounds[1], limit);
+  uint near_child = enter1 < enter0 ? 1u : 0u;
+  float enter = bvh_min(enter0, enter1), later = bvh_max(enter0, enter1);
+  if (later < CDL_INFINITY) bvh_put(stack, top++, node->child[1u - near_child], later);
+  if (enter < CDL_INFINITY) bvh_put(stack, top++, node->child[near_child], enter);
+  return top;
 }
 
 #endif

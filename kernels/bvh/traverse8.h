@@ -1,4 +1,4 @@
-/* traverse8.h: traversal of the eight-child layout; included by traverse.h.
+/* traverse8.h: nodes and leaves of the eight-child layout; included by traverse.h.
  *
  * Eight boxes, and four triangles, are tested at once with the roundings of triangle.h, so the hits
  * are those of the two-child layout bit for bit. Of the children that are hit, the nearest is
@@ -165,72 +165,34 @@ CDL_INLINE uint bvh_push(BvhStack *stack, uint top, CDL_GLOBAL const uint *child
   return top;
 }
 
-/* The best hit after `after`, or with `any` set just some hit. */
-CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
-                          CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                          float tmax, uint mask, Hit after, int any) {
-  BvhStack stack;
+CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit, int any,
+                          BvhStack *stack, uint *top) {
   float enters[8];
-  BvhQuery query;
-  query.best = hit_none(tmax);
-  query.after = after;
-  query.instance_enter = 0.0f;
-  query.instance = CDL_NONE;
-  BvhRay world = bvh_ray_in_world(nodes + root, o, d);
-  BvhRay ray = world;
-  if (!bvh_ray_is_usable(world)) return query.best;
-  uint top = 0u, base = 0u, current = root;
-  float enter = 0.0f;
-  int inside = 0;
-  for (;;) {
-    if ((current & CDL_BVH_LEAF) == 0u) {
-      CDL_GLOBAL const BvhNode *node = nodes + current;
-      uint hits = bvh_boxes(ray, node, query.best.t, enters);
-      uint others = hits & (hits - 1u);
-      if (hits != 0u) {
-        uint a = mask_lowest(hits);
-        if (others == 0u) {
-          current = node->child[a];
-          enter = enters[a];
-        } else if ((others & (others - 1u)) == 0u) {
-          uint b = mask_lowest(others);
-          int swap = enters[b] < enters[a];
-          stack.child[top] = node->child[swap ? a : b];
-          stack.enter[top++] = enters[swap ? a : b];
-          current = node->child[swap ? b : a];
-          enter = enters[swap ? b : a];
-        } else {
-          top = bvh_push(&stack, top, node->child, hits, enters) - 1u;
-          current = stack.child[top];
-          enter = stack.enter[top];
-        }
-        continue;
-      }
-    } else if (inside) {
-      if (bvh_leaf(ray, triangles, current, &query) && any) return query.best;
-    } else {
-      CDL_GLOBAL const cdl_BvhInstance *instance = instances + (current & CDL_BVH_INDEX);
-      if ((instance->mask & mask) != 0u) {
-        ray = bvh_ray_in_instance(instance, o, d);
-        query.instance_enter = enter;
-        query.instance = current & CDL_BVH_INDEX;
-        inside = 1;
-        base = top;
-        current = instance->root;
-        if (bvh_ray_is_usable(ray)) continue;
-      }
-    }
-    do {
-      if (top == base) {
-        if (!inside || top == 0u) return query.best;
-        ray = world;
-        inside = 0;
-        base = 0u;
-      }
-      enter = stack.enter[--top];
-      current = stack.child[top];
-    } while (enter > query.best.t);
+  uint hits = bvh_boxes(ray, node, limit, enters);
+  if (hits == 0u) return CDL_NONE;
+  uint others = hits & (hits - 1u), a = mask_lowest(hits);
+  if (others == 0u) return node->child[a];
+  if (any) {
+    for (; others != 0u; others &= others - 1u)
+      stack->child[(*top)++] = node->child[mask_lowest(others)];
+    return node->child[a];
   }
+  if ((others & (others - 1u)) == 0u) {
+    uint b = mask_lowest(others);
+    uint later = enters[b] < enters[a] ? a : b;
+    stack->child[*top] = node->child[later];
+    stack->enter[(*top)++] = enters[later];
+    return node->child[a + b - later];
+  }
+  *top = bvh_push(stack, *top, node->child, hits, enters) - 1u;
+  return stack->child[*top];
+}
+
+CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit,
+                              BvhStack *stack, uint top) {
+  float enters[8];
+  uint hits = bvh_boxes(ray, node, limit, enters);
+  return bvh_push(stack, top, node->child, hits, enters);
 }
 
 #endif

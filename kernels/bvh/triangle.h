@@ -38,7 +38,7 @@ typedef struct BvhRay {
   float far_x, far_y, far_z;
   uint sign_x, sign_y, sign_z;   /* where in min x y z, max x y z the near planes are */
   uint axis_x, axis_y, axis_z;   /* d is longest in axis_z */
-  float shear_x, shear_y, scale; /* of the triangle test: d.x/d.z, d.y/d.z, 1/d.z after renaming */
+  float shear_x, shear_y, scale; /* d.x/d.z, d.y/d.z, 1/d.z after renaming axes */
   float origin_x, origin_y, origin_z;
 } BvhRay;
 
@@ -87,9 +87,9 @@ CDL_INLINE BvhRay bvh_ray(vec3 o, vec3 d, vec3 low, vec3 high, float units) {
   r.axis_z = az >= ax && az >= ay ? 2u : ay >= ax ? 1u : 0u;
   r.axis_x = r.axis_z == 2u ? 0u : r.axis_z + 1u;
   r.axis_y = r.axis_x == 2u ? 0u : r.axis_x + 1u;
-  r.scale = 1.0f / bvh_component(d, r.axis_z);
-  r.shear_x = bvh_component(d, r.axis_x) / bvh_component(d, r.axis_z);
-  r.shear_y = bvh_component(d, r.axis_y) / bvh_component(d, r.axis_z);
+  r.scale = r.axis_z == 0u ? r.inverse_x : r.axis_z == 1u ? r.inverse_y : r.inverse_z;
+  r.shear_x = bvh_component(d, r.axis_x) * r.scale;
+  r.shear_y = bvh_component(d, r.axis_y) * r.scale;
   r.origin_x = bvh_component(o, r.axis_x);
   r.origin_y = bvh_component(o, r.axis_y);
   r.origin_z = bvh_component(o, r.axis_z);
@@ -211,20 +211,6 @@ CDL_INLINE float triangle_enter(BvhRay r, vec3 a, vec3 b, vec3 c) {
   vec3 farther = v3(r.sign_x == 0u ? high.x : low.x, r.sign_y == 1u ? high.y : low.y,
                     r.sign_z == 2u ? high.z : low.z);
   return bvh_slabs(r, closer, farther, CDL_INFINITY);
-}
-
-/* A ray in an instance's space; t is the same in both spaces. */
-CDL_INLINE BvhRay bvh_ray_in_instance(CDL_GLOBAL const cdl_BvhInstance *instance, vec3 o, vec3 d) {
-  CDL_GLOBAL const float *m = instance->to_object;
-  CDL_GLOBAL const float *box = instance->object_bounds;
-  if ((instance->flags & CDL_INSTANCE_IDENTITY) == 0u) {
-    o = v3(fma(m[0], o.x, fma(m[1], o.y, fma(m[2], o.z, m[3]))),
-           fma(m[4], o.x, fma(m[5], o.y, fma(m[6], o.z, m[7]))),
-           fma(m[8], o.x, fma(m[9], o.y, fma(m[10], o.z, m[11]))));
-    d = v3(fma(m[0], d.x, fma(m[1], d.y, m[2] * d.z)), fma(m[4], d.x, fma(m[5], d.y, m[6] * d.z)),
-           fma(m[8], d.x, fma(m[9], d.y, m[10] * d.z)));
-  }
-  return bvh_ray(o, d, v3(box[0], box[1], box[2]), v3(box[3], box[4], box[5]), BVH_PAD);
 }
 
 #endif
