@@ -83,7 +83,7 @@ $(B)/kernel_sources.c $(B)/abi_fields.h: $(B)/kernel_sources.stamp ;
 
 $(B)/libcandela.a: $(LIB_OBJECTS)
 	@rm -f $@
-	ar rcs $@ $^
+	ar qcs $@ $^
 
 $(B)/libcandela.so: $(LIB_OBJECTS)
 	$(LINK) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $^ $(LIBS) -o $@

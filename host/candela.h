@@ -101,6 +101,10 @@ typedef struct cdl_Settings {
 /* 1280 pixels wide at the camera's aspect, 64 samples of seed 0, 16 events deep, no limits. */
 void cdl_settings_default(cdl_Settings *settings);
 
+/* CDL_USAGE, naming the command line's option, for settings that contradict each other or that this
+ * version does not have. What depends on the scene (camera, crop) is left to the session. */
+cdl_Status cdl_settings_check(const cdl_Log *log, const cdl_Settings *settings);
+
 /* Reads a list of AOVs, "albedo,normal" or "all", into the bits of cdl_Settings.aovs. CDL_USAGE
  * names what there is. */
 cdl_Status cdl_aovs_parse(const cdl_Log *log, const char *list, uint32_t *aovs);
@@ -187,6 +191,10 @@ cdl_Status cdl_merge(const cdl_Log *log, const char *const *paths, size_t count,
 cdl_Status cdl_picture_write(cdl_Picture *picture, const char *path, const cdl_Display *display);
 char *cdl_picture_statistics_json(const cdl_Picture *picture);
 void cdl_picture_free(cdl_Picture *picture); /* NULL is nothing */
+
+/* Finds out whether cdl_text_write or cdl_session_save can write a file of this name: CDL_OUTPUT.
+ */
+cdl_Status cdl_text_check(const cdl_Log *log, const char *path);
 
 /* Writes a text to a file, all at once. */
 cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text);

@@ -41,7 +41,7 @@ int cli_choice(const char *option, const char *text, const char *const *names);
 /* The name that is most like `text`, or NULL if none is close. */
 const char *cli_closest(const char *text, const char *const *names);
 
-/* Prints errors and warnings to standard error, each on a line "candela: …", and notes too unless
+/* Prints messages to standard error, each on a line "candela: …"; no notes if
  * cli_quiet is set. A progress line is erased first. */
 extern const cdl_Log cli_log;
 extern int cli_quiet;
@@ -49,7 +49,7 @@ extern int cli_quiet;
 /* A line on standard error that replaces the one before; nothing is shown where standard error is
  * no terminal or cli_quiet is set. */
 void cli_progress_stage(void *user, const char *what, uint64_t done, uint64_t total);
-void cli_progress_samples(uint64_t pixels, uint64_t done, uint64_t total, double seconds);
+void cli_progress_samples(uint64_t done, uint64_t total, double seconds, double time_limit);
 void cli_progress_erase(void);
 
 /* From now on SIGINT and SIGTERM set the flag that cli_interrupted() returns; a second one ends the

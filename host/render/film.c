@@ -53,21 +53,20 @@ void film_free(cdl_Film *film) {
   free(film);
 }
 
-/* The block kept apart, made if it is new. Passes go block by block, so it is the last one or a new
- * one behind it. */
+/* The block kept apart, made if it is new. Waves of several blocks come back to earlier ones. */
 static cdl_FilmBlock *film_part(cdl_Film *film, uint32_t block, uint32_t samples) {
-  if (film->part_count && film->parts[film->part_count - 1].index == block)
-    return &film->parts[film->part_count - 1];
+  uint32_t at = film->part_count;
+  while (at && film->parts[at - 1].index >= block) at--;
+  if (at < film->part_count && film->parts[at].index == block) return &film->parts[at];
   cdl_FilmBlock *parts = realloc(film->parts, (film->part_count + 1) * sizeof *parts);
   if (!parts) return NULL;
   film->parts = parts;
-  cdl_FilmBlock *part = &parts[film->part_count];
-  part->index = block;
-  part->samples = samples;
-  part->sums = calloc(film_pixels(film) * film->channels, sizeof *part->sums);
-  if (!part->sums) return NULL;
+  float *sums = calloc(film_pixels(film) * film->channels, sizeof *sums);
+  if (!sums) return NULL;
+  memmove(&parts[at + 1], &parts[at], (film->part_count - at) * sizeof *parts);
+  parts[at] = (cdl_FilmBlock){block, samples, sums};
   film->part_count++;
-  return part;
+  return &parts[at];
 }
 
 /* Rule CDL_AOV_FIRST_SAMPLE keeps what is there; all else is summed. */

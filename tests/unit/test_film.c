@@ -164,14 +164,15 @@ static void keeps_blocks(void **state) {
   cdl_Film *film = make(2, 1, AOV_BIT(CDL_AOV_DEPTH), 1);
   const float a[8] = {1, 2, 3, 4, 5, 6, 7, 8}, b[4] = {9, 10, 11, 12};
   assert_int_equal(film_complete_parts(film), 0);
-  film_add(film, 4, 16, 0, 2, a, 2);
-  film_add(film, 5, 3, 1, 1, b, 1);
+  film_add(film, 4, 16, 0, 1, a, 2);
+  film_add(film, 5, 3, 0, 1, b, 1);
+  film_add(film, 4, 16, 1, 1, a + 1, 2); /* the second wave comes back to the first block */
   assert_int_equal(film->part_count, 2);
   assert_int_equal(film_complete_parts(film), 1);
   assert_int_equal(film->parts[0].index, 4);
   assert_int_equal(film->parts[1].samples, 3);
   assert_memory_equal(film->parts[0].sums, a, sizeof a);
-  const float expected[8] = {0, 9, 0, 10, 0, 11, 0, 12};
+  const float expected[8] = {9, 0, 10, 0, 11, 0, 12, 0};
   assert_memory_equal(film->parts[1].sums, expected, sizeof expected);
   film_free(film);
 }

@@ -1,0 +1,212 @@
+/* The public interface, where it is a thin layer over scene, device and film. */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "core/clock.h"
+#include "core/hash.h"
+#include "core/log.h"
+#include "image/image_file.h"
+#include "image/image_write.h"
+#include "render/session.h"
+#include "render/statistics.h"
+#include "scene/build.h"
+
+/* Channels of a part's file: beyond this, OpenEXR files are slow to open and some readers refuse.
+ */
+enum { MAX_PART_CHANNELS = 1000, MAX_DEPTH = 4095 };
+#define MAX_ENVIRONMENT_BYTES ((size_t)1 << 30)
+
+/* --- Scenes. What changes a scene changes its hash, which says whether two renders are of the
+ * same. */
+
+static void rehash(cdl_Scene *scene, const char *what, const void *data, size_t size) {
+  struct sha256_ctx hash;
+  sha256_init(&hash);
+  sha256_update(&hash, strlen(scene->sha256), (const uint8_t *)scene->sha256);
+  sha256_update(&hash, strlen(what) + 1, (const uint8_t *)what);
+  sha256_update(&hash, size, data);
+  hash_hex(&hash, scene->sha256);
+}
+
+cdl_Status cdl_scene_load(const cdl_Log *log, const char *path, double time, cdl_Scene **scene) {
+  const cdl_SceneOptions options = {.time = time};
+  const double start = clock_now();
+  cdl_Status status = scene_load(log, path, &options, scene);
+  if (status) return status;
+  if (time >= 0) rehash(*scene, "time", &time, sizeof time);
+  (*scene)->load_s = clock_now() - start;
+  return CDL_OK;
+}
+
+void cdl_scene_free(cdl_Scene *scene) { scene_free(scene); }
+
+const char *cdl_scene_sha256(const cdl_Scene *scene) { return scene->sha256; }
+
+static cdl_Status add_image(cdl_Scene *scene, const cdl_Log *log, const char *path,
+                            cdl_Image *image) {
+  const uint32_t n = scene->image_count;
+  cdl_Image **slot = array_push((void **)&scene->images, n, sizeof *slot);
+  char **name = array_push((void **)&scene->image_names, n, sizeof *name);
+  if (!slot || !name || !(*name = strdup(path))) {
+    image_free(image);
+    return log_fail(log, CDL_BAD_INPUT, "%s: not enough memory for the environment", path);
+  }
+  *slot = image;
+  scene->image_count++;
+  return CDL_OK;
+}
+
+cdl_Status cdl_scene_set_environment(cdl_Scene *scene, const cdl_Log *log, const char *path) {
+  unsigned char *bytes = NULL;
+  size_t size = 0;
+  cdl_Image *image = NULL;
+  if (!path) return CDL_OK;
+  const double start = clock_now();
+  cdl_Status status = image_file_read(log, path, MAX_ENVIRONMENT_BYTES, &bytes, &size);
+  if (!status) status = image_decode(log, path, bytes, size, &image);
+  if (!status) status = add_image(scene, log, path, image);
+  if (!status) {
+    scene->environment = (cdl_SceneEnvironment){
+        .present = 1, .image = scene->image_count - 1, .radiance = {1, 1, 1}, .strength = 1};
+    rehash(scene, "environment", bytes, size);
+    scene->load_s += clock_now() - start;
+  }
+  free(bytes);
+  return status;
+}
+
+void cdl_scene_set_environment_strength(cdl_Scene *scene, float strength) {
+  scene->environment.strength *= strength;
+  rehash(scene, "strength", &strength, sizeof strength);
+}
+
+void cdl_scene_set_background(cdl_Scene *scene, const float radiance[3]) {
+  scene->environment = (cdl_SceneEnvironment){.present = 1, .image = CDL_NONE, .strength = 1};
+  memcpy(scene->environment.radiance, radiance, sizeof scene->environment.radiance);
+  rehash(scene, "background", radiance, sizeof scene->environment.radiance);
+}
+
+/* --- Devices. */
+
+cdl_Status cdl_device_open(const cdl_Log *log, const char *selector, cdl_Device **device) {
+  return device_open(log, selector, device);
+}
+
+void cdl_device_close(cdl_Device *device) { device_close(device); }
+
+/* --- Settings. */
+
+void cdl_settings_default(cdl_Settings *settings) {
+  *settings = (cdl_Settings){.width = 1280, .samples = 64, .max_depth = 16};
+}
+
+cdl_Status cdl_aovs_parse(const cdl_Log *log, const char *list, uint32_t *aovs) {
+  return aov_parse(log, list, aovs);
+}
+
+const char *cdl_aov_name(unsigned index, const char **meaning) {
+  if (index >= CDL_AOV_COUNT) return NULL;
+  if (meaning) *meaning = aov_table[index].meaning;
+  return aov_table[index].name;
+}
+
+static uint32_t stored_channels(uint32_t aovs) {
+  uint32_t channels = 0;
+  for (int i = 0; i < CDL_AOV_COUNT; i++)
+    if ((aovs | AOV_BIT(CDL_AOV_BEAUTY)) & AOV_BIT(i) && aov_table[i].rule != CDL_AOV_STATISTIC)
+      channels += (uint32_t)aov_table[i].channels;
+  return channels;
+}
+
+static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
+  const uint32_t first = s->first_sample, count = s->sample_count;
+  if (!s->samples) return log_fail(log, CDL_USAGE, "--spp must be at least 1");
+  if (first % CDL_FILM_BLOCK)
+    return log_fail(log, CDL_USAGE, "--samples: %u is not a multiple of %u", first, CDL_FILM_BLOCK);
+  if (first >= s->samples)
+    return log_fail(log, CDL_USAGE, "--samples: %u is not below --spp %u", first, s->samples);
+  if (count > s->samples - first)
+    return log_fail(log, CDL_USAGE, "--samples: %u + %u is beyond --spp %u", first, count,
+                    s->samples);
+  if (count % CDL_FILM_BLOCK && first + count != s->samples)
+    return log_fail(log, CDL_USAGE,
+                    "--samples: %u is not a multiple of %u, nor the rest of --spp %u", count,
+                    CDL_FILM_BLOCK, s->samples);
+  if (first || (count && count < s->samples)) {
+    const uint32_t most = MAX_PART_CHANNELS / stored_channels(s->aovs) * CDL_FILM_BLOCK;
+    const uint32_t wanted = count ? count : s->samples - first;
+    if (wanted > most)
+      return log_fail(log, CDL_USAGE, "--samples: a part of these AOVs holds at most %u samples",
+                      most);
+  }
+  return CDL_OK;
+}
+
+cdl_Status cdl_settings_check(const cdl_Log *log, const cdl_Settings *s) {
+  cdl_Status status = check_samples(log, s);
+  if (status) return status;
+  if (s->schedule == CDL_SCHEDULE_FUSED)
+    return log_fail(log, CDL_USAGE, "--schedule: this version has auto and wavefront, not fused");
+  if (s->bvh_width && s->bvh_width != 2)
+    return log_fail(log, CDL_USAGE, "--bvh: this version has auto and 2, not %u", s->bvh_width);
+  if (s->fast_math) return log_fail(log, CDL_USAGE, "--math: this version has exact, not fast");
+  if (s->max_depth > MAX_DEPTH)
+    return log_fail(log, CDL_USAGE, "--max-depth: %u is more than %d", s->max_depth, MAX_DEPTH);
+  if (!(s->time_limit >= 0) || !isfinite(s->time_limit))
+    return log_fail(log, CDL_USAGE, "--time must be finite and not negative");
+  if (!(s->noise_target >= 0) || !isfinite(s->noise_target))
+    return log_fail(log, CDL_USAGE, "--noise must be finite and not negative");
+  return CDL_OK;
+}
+
+/* --- Sessions. */
+
+void cdl_session_size(const cdl_Session *session, uint32_t *width, uint32_t *height) {
+  if (width) *width = session->film->width;
+  if (height) *height = session->film->height;
+}
+
+void cdl_session_samples(const cdl_Session *session, uint32_t *least, uint32_t *most) {
+  film_sample_range(session->film, least, most);
+}
+
+cdl_Status cdl_session_pixels(const cdl_Session *session, float *rgb) {
+  float *resolved = film_resolve(session->film);
+  if (!resolved) return log_fail(session->log, CDL_DEVICE, "not enough memory for the picture");
+  memcpy(rgb, resolved, 3 * sizeof *rgb * session->film->width * session->film->height);
+  free(resolved);
+  return CDL_OK;
+}
+
+char *cdl_session_statistics_json(cdl_Session *session) {
+  json_t *json = statistics_of_session(session);
+  char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
+  json_decref(json);
+  return text;
+}
+
+char *cdl_session_profile_text(cdl_Session *session) {
+  char *text = NULL;
+  size_t size;
+  FILE *out = session->profile ? open_memstream(&text, &size) : NULL;
+  if (!out) return NULL;
+  profile_table(out, session->profile, session->stats.render_s);
+  fclose(out);
+  return text;
+}
+
+/* --- Files. */
+
+cdl_Status cdl_output_check(const cdl_Log *log, const char *path) {
+  return image_check_output(log, path);
+}
+
+cdl_Status cdl_text_check(const cdl_Log *log, const char *path) {
+  return image_file_probe(log, path);
+}
+
+cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text) {
+  return image_file_write(log, path, text, strlen(text));
+}
