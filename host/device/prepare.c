@@ -30,10 +30,16 @@ static int make_folders(const char *path) {
   return (!mkdir(part, 0700) || errno == EEXIST) && !access(part, W_OK | X_OK);
 }
 
+/* Compiled kernels are run, so they must not come from a folder of somebody else's. */
+static int is_own(const char *folder) {
+  struct stat info;
+  return !lstat(folder, &info) && S_ISDIR(info.st_mode) && info.st_uid == geteuid();
+}
+
 /* Locks the first free slot below `base` for the life of the process: the descriptor is never
  * closed, and the kernel drops the lock however the process ends. */
 static int take_slot(const char *base, char slot[PATH_SIZE]) {
-  if (!make_folders(base)) return 0;
+  if (!make_folders(base) || !is_own(base)) return 0;
   for (int i = 0; i < CACHE_SLOTS; i++) {
     char lock[PATH_SIZE];
     if (snprintf(lock, sizeof lock, "%s/slot%d.lock", base, i) >= PATH_SIZE) return 0;
@@ -60,7 +66,8 @@ static int take_cache(char slot[PATH_SIZE]) {
     snprintf(base, sizeof base, "%s/.cache/candela/pocl", home);
     if (take_slot(base, slot)) return 1;
   }
-  snprintf(base, sizeof base, "%s/candela-%u/pocl", tmp && *tmp ? tmp : "/tmp", (unsigned)getuid());
+  snprintf(base, sizeof base, "%s/candela-pocl-%u", tmp && *tmp ? tmp : "/tmp",
+           (unsigned)geteuid());
   return take_slot(base, slot);
 }
 
