@@ -45,6 +45,9 @@ endif
 CC := gcc
 CXX := g++
 SANITIZE ?=
+# One short line for each file; V=1 shows the commands.
+V ?=
+SAY = $(if $(V),,@echo "  $(1)	$(2)";)
 CPPFLAGS += -Ihost -Ikernels -I$(B) $(PACKAGE_CFLAGS)
 COMMON := -O2 -g -Wall -Wextra -Werror -ffp-contract=off -fopenmp -fPIC -fvisibility=hidden
 COMMON += -MMD -MP $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover=all)
@@ -62,34 +65,34 @@ all: $(B)/candela $(B)/libcandela.a $(B)/libcandela.so
 
 $(B)/obj/%.c.o: %.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(ALL_CFLAGS) -c $< -o $@
+	$(call SAY,CC,$<)$(CC) $(CPPFLAGS) $(ALL_CFLAGS) -c $< -o $@
 
 $(B)/obj/%.cpp.o: %.cpp Makefile
 	@mkdir -p $(@D)
-	$(CXX) $(CPPFLAGS) $(ALL_CXXFLAGS) -c $< -o $@
+	$(call SAY,CXX,$<)$(CXX) $(CPPFLAGS) $(ALL_CXXFLAGS) -c $< -o $@
 
 $(B)/obj/kernel_sources.c.o: $(B)/kernel_sources.c Makefile
 	@mkdir -p $(@D)
-	$(CC) $(CPPFLAGS) $(ALL_CFLAGS) -c $< -o $@
+	$(call SAY,CC,$<)$(CC) $(CPPFLAGS) $(ALL_CFLAGS) -c $< -o $@
 
 # The script leaves files alone that would not change, so a stamp says when it last ran; folders are
 # listed so that a removed kernel is noticed as well.
 KERNEL_FILES := $(shell find kernels -type d -o -name '*.cl' -o -name '*.h')
 $(B)/kernel_sources.stamp: scripts/embed_kernels.sh $(KERNEL_FILES)
 	@mkdir -p $(B)
-	scripts/embed_kernels.sh kernels $(B)/kernel_sources.c $(B)/abi_fields.h
+	$(call SAY,EMBED,kernels)scripts/embed_kernels.sh kernels $(B)/kernel_sources.c $(B)/abi_fields.h
 	@touch $@
 $(B)/kernel_sources.c $(B)/abi_fields.h: $(B)/kernel_sources.stamp ;
 
 $(B)/libcandela.a: $(LIB_OBJECTS)
 	@rm -f $@
-	ar qcs $@ $^
+	$(call SAY,AR,$@)ar qcs $@ $^
 
 $(B)/libcandela.so: $(LIB_OBJECTS)
-	$(LINK) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $^ $(LIBS) -o $@
+	$(call SAY,LINK,$@)$(LINK) -shared -Wl,-soname,$(SONAME) -Wl,--no-undefined $^ $(LIBS) -o $@
 
 $(B)/candela: $(CLI_OBJECTS) $(B)/libcandela.a
-	$(LINK) $^ $(LIBS) -o $@
+	$(call SAY,LINK,$@)$(LINK) $^ $(LIBS) -o $@
 
 # --- Tests: tests/FOLDER/test_NAME.c is a program; other .c files there are linked into each.
 
@@ -108,7 +111,7 @@ $(TEST_SOURCES:%=$(B)/obj/%.o): $(B)/kernel_sources.stamp
 $(TEST_PROGRAMS): $(B)/tests/%: $(B)/obj/tests/%.c.o $$(call test_helpers,$$(firstword $$(subst /, ,$$*))) \
   $(B)/libcandela.a
 	@mkdir -p $(@D)
-	$(LINK) $^ $(LIBS) -lcmocka -o $@
+	$(call SAY,LINK,$@)$(LINK) $^ $(LIBS) -lcmocka -o $@
 
 run-test: all tests
 	@CANDELA=$(B)/candela tests/run.sh $(B)/tests $(TEST_PROGRAMS) $(TEST_SCRIPTS)
@@ -130,7 +133,7 @@ BENCH_SCRIPTS := $(wildcard scripts/bench_*.sh)
 $(BENCH_PROGRAMS): $(B)/bench/%: $$(patsubst $$(percent),$(B)/obj/$$(percent).o,$$(wildcard scripts/$$*.c scripts/$$*.cpp)) \
   $(B)/libcandela.a
 	@mkdir -p $(@D)
-	$(LINK) $^ $(LIBS) -lembree3 -o $@
+	$(call SAY,LINK,$@)$(LINK) $^ $(LIBS) -lembree3 -o $@
 percent := %
 
 run-bench: all $(BENCH_PROGRAMS)
