@@ -3,8 +3,9 @@
  * masking in its separable form.
  *
  * dielectric = mix(base / pi, specular, F) takes F at wo.h from the diffuse part, not what the
- * specular lobe reflects in all; white and seen at a grazing angle it returns up to twice the light
- * (tests/device/test_bsdf.c has the figures). That is the specification's; metals keep to 1. */
+ * specular lobe reflects in all. White seen at cos 0.1 therefore returns 1.5 times the light it
+ * gets at roughness 0, 1.4 at 0.2, 1.05 at 0.6, and less than 1 from 0.9 on; at cos 0.8 and above
+ * never more than 1. That is the specification's own; metals keep to 1. */
 #ifndef CDL_BSDF_GLTF_H
 #define CDL_BSDF_GLTF_H
 

@@ -72,8 +72,8 @@ static const Material materials[] = {
     GLTF(1, 0.0f, 1, 1),
     GLTF(1, 0.3f, 1, 1),
     GLTF(0.7f, 1.0f, 1, 1),
-    GLTF(1, 0.2f, 0, 2),
-    GLTF(1, 0.6f, 0, 2),
+    GLTF(1, 0.2f, 0, 1.5f),
+    GLTF(1, 0.6f, 0, 1.06f),
     GLTF(0.2f, 1.0f, 0, 1),
     GLTF(0, 0.4f, 0, 1),
     GLTF(0.5f, 0.5f, 0.5f, 1),
@@ -190,6 +190,7 @@ static size_t chart_cell(const Chart *c, const double w[3]) {
 /* The last cell is what falls below the surface. Returns the integral of the pdf above it. */
 static double expect_cells(const Chart *c, double expected[CELLS_X * CELLS_Y + 1]) {
   double total = 0, end = 2 / (2 + c->spread);
+#pragma omp parallel for schedule(dynamic, 8) reduction(+ : total)
   for (int i = 0; i < CELLS_X * CELLS_Y; i++) {
     int ix = i / CELLS_Y, iy = i % CELLS_Y;
     double x[2] = {end * ix / CELLS_X, end * (ix + 1) / CELLS_X};
