@@ -99,7 +99,7 @@ CDL_INLINE BvhRay bvh_ray(vec3 o, vec3 d, vec3 low, vec3 high, float units) {
 /* False for rays with an infinite or not-a-number component or without direction, and in an empty
  * box. */
 CDL_INLINE int bvh_ray_is_usable(BvhRay r) {
-  return fabs(r.near_x) + fabs(r.near_y) + fabs(r.near_z) < CDL_INFINITY;
+  return fabs(r.near_x) + fabs(r.near_y) + fabs(r.near_z) < CDL_INFINITY && r.scale != 0.0f;
 }
 
 /* Where the ray, cut to 0 … limit, enters a box given by its near and far planes; infinity:
