@@ -87,11 +87,34 @@ static const uint8_t *view_data(const Document *doc, uint32_t view, size_t offse
   return doc->buffers[v->buffer].data + v->offset + offset;
 }
 
+static int view_is_here(const Document *doc, uint32_t view) {
+  return view == DOCUMENT_NONE || doc->buffers[doc->views[view].buffer].data;
+}
+
+static int is_here(const Document *doc, const Accessor *a) {
+  return view_is_here(doc, a->view) && (!a->sparse_count || (view_is_here(doc, a->sparse_view) &&
+                                                             view_is_here(doc, a->values_view)));
+}
+
+int accessor_has_data(const Document *doc, const Accessor *a) {
+  return (a->view != DOCUMENT_NONE || a->sparse_count) && is_here(doc, a);
+}
+
+cdl_Status accessor_require(const Document *doc, uint32_t index) {
+  if (is_here(doc, &doc->accessors[index])) return CDL_OK;
+  return document_fail(doc, AT("/accessors/%u", index), "NON_RELATIVE_URI",
+                       "its buffer has no data here, and nothing is fetched from the network.");
+}
+
+static size_t dense_stride(const Document *doc, const Accessor *accessor) {
+  uint32_t stride = doc->views[accessor->view].stride;
+  return stride ? stride : column_size(accessor) * accessor->columns;
+}
+
 /* Plain packed floats, by far the most frequent kind, are copied whole. */
 static void read_dense(const Document *doc, const Accessor *accessor, float *out) {
-  size_t stride = doc->views[accessor->view].stride;
+  size_t stride = dense_stride(doc, accessor);
   const uint8_t *data = view_data(doc, accessor->view, accessor->offset);
-  if (!stride) stride = column_size(accessor) * accessor->columns;
   if (accessor->component == GL_FLOAT && stride == 4 * (size_t)accessor->width) {
     memcpy(out, data, accessor->count * stride);
     return;
@@ -122,8 +145,7 @@ uint32_t *accessor_integers(const Document *doc, uint32_t index) {
   if (!out) return NULL;
   if (accessor->view != DOCUMENT_NONE) {
     const uint8_t *data = view_data(doc, accessor->view, accessor->offset);
-    size_t stride = doc->views[accessor->view].stride;
-    if (!stride) stride = component_size(accessor->component);
+    size_t stride = dense_stride(doc, accessor);
     for (size_t i = 0; i < accessor->count; i++)
       out[i] = read_unsigned(data + i * stride, accessor->component, 0);
   }
@@ -134,4 +156,31 @@ uint32_t *accessor_integers(const Document *doc, uint32_t index) {
         read_unsigned(values, accessor->component, i);
   }
   return out;
+}
+
+const uint8_t *accessor_element(const Document *doc, const Accessor *a, size_t i) {
+  size_t low = 0, high = a->sparse_count;
+  while (low < high) {
+    size_t middle = (low + high) / 2;
+    uint32_t index = read_unsigned(view_data(doc, a->sparse_view, a->sparse_offset),
+                                   a->sparse_component, middle);
+    if (index == i)
+      return view_data(doc, a->values_view, a->values_offset) +
+             middle * column_size(a) * a->columns;
+    if (index < i)
+      low = middle + 1;
+    else
+      high = middle;
+  }
+  if (a->view == DOCUMENT_NONE) return NULL;
+  return view_data(doc, a->view, a->offset) + i * dense_stride(doc, a);
+}
+
+double accessor_component(const Accessor *a, const uint8_t *element, uint32_t c) {
+  if (!element) return 0;
+  uint32_t rows = a->width / a->columns;
+  const uint8_t *data =
+      element + c / rows * column_size(a) + c % rows * component_size(a->component);
+  if (a->component == GL_UNSIGNED_INT) return read_unsigned(data, a->component, 0);
+  return read_component(data, a->component, 0);
 }

@@ -88,6 +88,7 @@ static cdl_Status apply_channel(Builder *builder, const json_t *animation, const
       json_array_get(json_object_get(animation, "samplers"), json_get_index(channel, "sampler"));
   const char *mode = json_get_string(sampler, "interpolation", "LINEAR");
   uint32_t node = json_get_index(target, "node"), input = json_get_index(sampler, "input");
+  uint32_t output = json_get_index(sampler, "output");
   Track track = {.count = builder->doc->accessors[input].count,
                  .step = strcmp(mode, "STEP") == 0,
                  .cubic = strcmp(mode, "CUBICSPLINE") == 0};
@@ -97,13 +98,16 @@ static cdl_Status apply_channel(Builder *builder, const json_t *animation, const
                   "animations other than of translation, rotation and scale are not supported.");
     return CDL_OK;
   }
+  cdl_Status status = accessor_require(builder->doc, input);
+  if (!status) status = accessor_require(builder->doc, output);
+  if (status) return status;
   float *times = accessor_floats(builder->doc, input);
-  float *values = accessor_floats(builder->doc, json_get_index(sampler, "output"));
+  float *values = accessor_floats(builder->doc, output);
   track.times = times;
   track.values = values;
   if (times && values) sample(&track, builder->time, trs + 10 * (size_t)node + slot);
   moved[node] = 1;
-  cdl_Status status = times && values ? CDL_OK : document_out_of_memory(builder->doc);
+  if (!times || !values) status = document_out_of_memory(builder->doc);
   free(times);
   free(values);
   return status;

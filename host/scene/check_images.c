@@ -51,14 +51,16 @@ static cdl_Status read_embedded(Document *doc, uint32_t i, uint32_t view, Bytes 
     return document_fail(doc, AT("/images/%u/bufferView", i), "IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE",
                          "a bufferView with an image cannot have a stride.");
   const BufferView *v = &doc->views[view];
+  if (!doc->buffers[v->buffer].data) return CDL_OK;
   *bytes = (Bytes){doc->buffers[v->buffer].data + v->offset, v->length, NULL};
   return CDL_OK;
 }
 
 static cdl_Status check_kind(Document *doc, uint32_t i, const json_t *json, const char *uri_type,
                              Bytes *bytes) {
-  Kind kind = image_kind(bytes);
+  Kind kind = bytes->data ? image_kind(bytes) : KIND_OTHER;
   const char *declared = json_get_string(json, "mimeType", ""), *actual = media_types[kind];
+  if (!bytes->data) return CDL_OK;
   if (kind == KIND_OTHER) {
     document_note(doc, NULL, AT("/images/%u", i),
                   "IMAGE_UNRECOGNIZED_FORMAT: it is none of PNG, JPEG, WebP and KTX2.");

@@ -9,8 +9,6 @@
 #define MOST_ZEROS ((size_t)1 << 24)
 
 static cdl_Status read_embedded(Document *doc, uint32_t i, Bytes *bytes) {
-  if (i > 0 || !doc->is_binary)
-    return document_fail(doc, AT("/buffers/%u", i), "UNDEFINED_PROPERTY", "the buffer has no uri.");
   if (!doc->bin.data)
     return document_fail(doc, AT("/buffers/%u", i), "BUFFER_MISSING_GLB_DATA",
                          "the file has no binary chunk.");
@@ -26,6 +24,12 @@ static cdl_Status read_buffer(Document *doc, uint32_t i) {
   char type[64] = "";
   if (uri && uri_is_remote(uri)) {
     document_note(doc, NULL, at, "NON_RELATIVE_URI: nothing is fetched from the network.");
+    bytes->size = (size_t)length;
+    return CDL_OK;
+  }
+  /* A buffer may come without data, for an extension to fill. */
+  if (!uri && (i > 0 || !doc->is_binary)) {
+    bytes->size = (size_t)length;
     return CDL_OK;
   }
   cdl_Status status =
@@ -61,9 +65,6 @@ static cdl_Status read_view(Document *doc, uint32_t i) {
   view->stride = (uint32_t)json_get_number(json, "byteStride", 0);
   view->target = (uint32_t)json_get_number(json, "target", 0);
   const Bytes *buffer = &doc->buffers[view->buffer];
-  if (!buffer->data)
-    return document_fail(doc, AT("/buffers/%u/uri", view->buffer), "NON_RELATIVE_URI",
-                         "the scene needs this buffer, and nothing is fetched from the network.");
   if (view->offset > buffer->size || view->length > buffer->size - view->offset) {
     const char *member = view->offset > buffer->size ? "byteOffset" : "byteLength";
     return document_fail(doc, AT("/bufferViews/%u/%s", i, member), "BUFFER_VIEW_TOO_LONG",
@@ -155,7 +156,8 @@ static cdl_Status read_sparse(Document *doc, uint32_t i, const json_t *sparse, A
   if (!status)
     status = check_range(doc, AT("/accessors/%u/sparse/values", i), a->values_view,
                          a->values_offset, a->sparse_count, packed, element);
-  return status ? status : check_sparse_order(doc, i, a);
+  if (status || !accessor_has_data(doc, a)) return status;
+  return check_sparse_order(doc, i, a);
 }
 
 static void read_type(const char *type, Accessor *a) {

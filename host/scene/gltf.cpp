@@ -28,7 +28,8 @@ bool no_image(tinygltf::Image *, int, std::string *, std::string *, int, int, co
   return true;
 }
 
-/* Numbers that are integers are written as such: tinygltf reads `1.0` as no index. */
+/* Numbers that are integers are written as such: tinygltf reads `1.0` as no index. Indices of
+ * primitives stay behind, as it would look for their buffer views. */
 json_t *with_integers(const json_t *value) {
   if (json_is_real(value)) {
     double x = json_real_value(value);
@@ -47,15 +48,16 @@ json_t *with_integers(const json_t *value) {
   const char *key;
   json_t *member;
   json_object_foreach(const_cast<json_t *>(value), key, member) {
-    if (std::string(key) != "extras" && std::string(key) != "extensions")
+    std::string name = key;
+    if (name != "extras" && name != "extensions" && name != "indices")
       json_object_set_new(copy, key, with_integers(member));
   }
   return copy;
 }
 
 std::string graph_text(const json_t *root) {
-  static const char *const kept[] = {"asset",     "scene",   "scenes", "nodes",      "meshes",
-                                     "accessors", "cameras", "skins",  "bufferViews"};
+  static const char *const kept[] = {"asset",  "scene",   "scenes", "nodes",
+                                     "meshes", "cameras", "skins"};
   json_t *graph = json_object();
   for (const char *name : kept)
     if (json_t *value = json_object_get(root, name))

@@ -41,8 +41,7 @@ private:
   void grow_bounds(const cdl_SceneMesh &mesh, const Matrix &to_world);
 
   /* gltf_mesh.cpp */
-  PrimitiveSource primitive_source(const tinygltf::Mesh &mesh,
-                                   const tinygltf::Primitive &primitive) const;
+  PrimitiveSource primitive_source(uint32_t mesh, size_t number) const;
   const std::vector<uint32_t> &mesh_primitives(uint32_t mesh);
   std::vector<uint32_t> skinned_primitives(uint32_t node);
   std::vector<Matrix> joint_matrices(uint32_t skin) const;

@@ -2,12 +2,15 @@
 #include "scene/accessor.h"
 #include "scene/gltf.h"
 
-PrimitiveSource GltfScene::primitive_source(const tinygltf::Mesh &mesh,
-                                            const tinygltf::Primitive &primitive) const {
+PrimitiveSource GltfScene::primitive_source(uint32_t mesh, size_t number) const {
+  const tinygltf::Primitive &primitive = model.meshes[mesh].primitives[number];
   auto attribute = [&](const char *name) {
     auto found = primitive.attributes.find(name);
     return found == primitive.attributes.end() ? CDL_NONE : index_of(found->second);
   };
+  const json_t *meshes_json = json_object_get(builder->doc->root, "meshes");
+  const json_t *json =
+      json_array_get(json_object_get(json_array_get(meshes_json, mesh), "primitives"), number);
   PrimitiveSource source = {};
   source.position = attribute("POSITION");
   source.normal = attribute("NORMAL");
@@ -17,21 +20,21 @@ PrimitiveSource GltfScene::primitive_source(const tinygltf::Mesh &mesh,
   source.color = attribute("COLOR_0");
   source.joints = attribute("JOINTS_0");
   source.weights = attribute("WEIGHTS_0");
-  source.indices = index_of(primitive.indices);
+  source.indices = json_get_index(json, "indices");
   source.material = index_of(primitive.material);
   source.mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : (uint32_t)primitive.mode;
-  source.name = mesh.name.c_str();
+  source.name = model.meshes[mesh].name.c_str();
   return source;
 }
 
 const std::vector<uint32_t> &GltfScene::mesh_primitives(uint32_t mesh) {
   if (made[mesh]) return meshes[mesh];
-  for (const tinygltf::Primitive &primitive : model.meshes[mesh].primitives) {
-    PrimitiveSource source = primitive_source(model.meshes[mesh], primitive);
+  for (size_t i = 0; i < model.meshes[mesh].primitives.size(); i++) {
+    PrimitiveSource source = primitive_source(mesh, i);
     uint32_t index;
     check(build_primitive(builder, &source, &index));
     if (index != CDL_NONE) meshes[mesh].push_back(index);
-    if (!primitive.targets.empty())
+    if (!model.meshes[mesh].primitives[i].targets.empty())
       document_note(builder->doc, "targets", "/meshes",
                     "morph targets are not supported; the base shape is shown.");
   }
@@ -44,6 +47,7 @@ std::vector<Matrix> GltfScene::joint_matrices(uint32_t index) const {
   std::vector<Matrix> joints;
   float *inverse = nullptr;
   if (skin.inverseBindMatrices >= 0) {
+    check(accessor_require(builder->doc, (uint32_t)skin.inverseBindMatrices));
     inverse = accessor_floats(builder->doc, (uint32_t)skin.inverseBindMatrices);
     if (!inverse) throw std::bad_alloc();
   }
@@ -62,11 +66,11 @@ std::vector<Matrix> GltfScene::joint_matrices(uint32_t index) const {
 }
 
 std::vector<uint32_t> GltfScene::skinned_primitives(uint32_t node) {
-  const tinygltf::Mesh &mesh = model.meshes[(size_t)model.nodes[node].mesh];
+  uint32_t mesh = (uint32_t)model.nodes[node].mesh;
   std::vector<Matrix> joints = joint_matrices((uint32_t)model.nodes[node].skin);
   std::vector<uint32_t> made_now;
-  for (const tinygltf::Primitive &primitive : mesh.primitives) {
-    PrimitiveSource source = primitive_source(mesh, primitive);
+  for (size_t i = 0; i < model.meshes[mesh].primitives.size(); i++) {
+    PrimitiveSource source = primitive_source(mesh, i);
     uint32_t index;
     check(build_primitive(builder, &source, &index));
     if (index == CDL_NONE) continue;

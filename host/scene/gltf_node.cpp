@@ -164,6 +164,7 @@ std::vector<Matrix> GltfScene::gpu_instances(uint32_t node) const {
   for (int a = 0; a < 3; a++) {
     uint32_t accessor = json_get_index(attributes, names[a]);
     if (accessor == DOCUMENT_NONE) continue;
+    check(accessor_require(builder->doc, accessor));
     count = builder->doc->accessors[accessor].count;
     copies.resize(10 * count);
     if (copies[9] == 0)

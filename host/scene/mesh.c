@@ -35,6 +35,8 @@ static cdl_Status read_indices(Builder *builder, const PrimitiveSource *source,
   uint32_t *given = NULL;
   size_t count = mesh->vertex_count;
   if (source->indices != CDL_NONE) {
+    cdl_Status status = accessor_require(doc, source->indices);
+    if (status) return status;
     given = accessor_integers(doc, source->indices);
     count = doc->accessors[source->indices].count;
     if (!given) return document_out_of_memory(doc);
@@ -53,6 +55,8 @@ static cdl_Status read_indices(Builder *builder, const PrimitiveSource *source,
 /* Colours without opacity are opaque. */
 static cdl_Status read_colors(Builder *builder, uint32_t accessor, cdl_SceneMesh *mesh) {
   Document *doc = builder->doc;
+  cdl_Status status = accessor_require(doc, accessor);
+  if (status) return status;
   float *values = accessor_floats(doc, accessor);
   if (!values) return document_out_of_memory(doc);
   if (doc->accessors[accessor].width == 4) {
@@ -89,9 +93,13 @@ static cdl_Status read_attributes(Builder *builder, const PrimitiveSource *sourc
                {source->normal == CDL_NONE ? CDL_NONE : source->tangent, &mesh->tangents},
                {source->uv[0], &mesh->uv[0]},
                {source->uv[1], &mesh->uv[1]}};
-  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++)
-    if (parts[i].accessor != CDL_NONE && !(*parts[i].to = accessor_floats(doc, parts[i].accessor)))
-      return document_out_of_memory(doc);
+  for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) {
+    if (parts[i].accessor == CDL_NONE) continue;
+    cdl_Status status = accessor_require(doc, parts[i].accessor);
+    if (status) return status;
+    *parts[i].to = accessor_floats(doc, parts[i].accessor);
+    if (!*parts[i].to) return document_out_of_memory(doc);
+  }
   normalise(mesh->normals, mesh->vertex_count, 3);
   normalise(mesh->tangents, mesh->vertex_count, 4);
   return source->color == CDL_NONE ? CDL_OK : read_colors(builder, source->color, mesh);

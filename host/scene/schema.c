@@ -116,7 +116,13 @@ static cdl_Status check_index(Document *doc, const json_t *value, const Member *
   cdl_Status status = check_number(doc, value, &index, frame);
   if (status || !member->target) return status;
   double i = json_number_value(value);
-  if (i >= (double)json_array_size(target_array(doc, member->target)))
+  const json_t *array = target_array(doc, member->target);
+  int in_extension =
+      strcmp(member->target, "lights") == 0 || strcmp(member->target, "variants") == 0;
+  if (!array && in_extension)
+    return FAIL(doc, frame->up, "UNSATISFIED_DEPENDENCY",
+                "the extension must define %s at the root.", member->target);
+  if (i >= (double)json_array_size(array))
     return FAIL(doc, frame, "UNRESOLVED_REFERENCE", "there is no %s[%.0f].", member->target, i);
   return CDL_OK;
 }

@@ -46,9 +46,12 @@ static void move_vertex(const Matrix *to, size_t i, cdl_SceneMesh *mesh) {
 
 cdl_Status skin_mesh(Builder *builder, const PrimitiveSource *primitive, const Matrix *joints,
                      uint32_t joint_count, cdl_SceneMesh *mesh) {
+  cdl_Status status = accessor_require(builder->doc, primitive->joints);
+  if (!status) status = accessor_require(builder->doc, primitive->weights);
+  if (status) return status;
   float *indices = accessor_floats(builder->doc, primitive->joints);
   float *weights = accessor_floats(builder->doc, primitive->weights);
-  cdl_Status status = indices && weights ? CDL_OK : document_out_of_memory(builder->doc);
+  if (!indices || !weights) status = document_out_of_memory(builder->doc);
   for (size_t i = 0; !status && i < mesh->vertex_count; i++) {
     Matrix to = blend(indices + 4 * i, weights + 4 * i, joints, joint_count);
     move_vertex(&to, i, mesh);

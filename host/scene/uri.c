@@ -151,6 +151,8 @@ cdl_Status document_read_uri(Document *doc, const char *pointer, const char *uri
   *bytes = (Bytes){0};
   if (media_type) media_type[0] = 0;
   if (strncasecmp(uri, "data:", 5) == 0) return read_data_uri(doc, pointer, uri, bytes, media_type);
+  if (strcspn(uri, ":") < strcspn(uri, "/") && !uri_is_remote(uri))
+    return document_fail(doc, pointer, "INVALID_URI", "its scheme is empty or malformed.");
   if (uri_is_remote(uri))
     return document_fail(doc, pointer, "NON_RELATIVE_URI",
                          "%.200s is not read: only files beside the scene are.", uri);
