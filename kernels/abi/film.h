@@ -8,7 +8,7 @@
 
 typedef struct cdl_FilmChannel {
   uint field; /* CDL_SLOT_* of its word */
-  uint is_id; /* 1: not added: the first sample's */
+  uint first_only; /* 1: not added: the bits of the first sample */
   uint pad[2];
 } cdl_FilmChannel;
 CDL_ABI_SIZE(cdl_FilmChannel, 16);

@@ -53,11 +53,13 @@ CDL_FIELD(WORK, LIGHT_PDF, 1)
 /* What the light adds to the pixel if nothing is in between; 0: no shadow ray. */
 CDL_FIELD(WORK, SHADOW_ORIGIN, 3)
 CDL_FIELD(WORK, SHADOW_RADIANCE, 3)
+/* 1 if a shadow ray is traced for this vertex, else 0. */
+CDL_FIELD(WORK, SHADOW_COUNT, 1)
 
 /* Radiance of the sample, RGB. */
 CDL_FIELD(SLOT, RADIANCE, 3)
 /* Of the first surface, for AOVs: colour, shading normal, distance from the camera plane in m, position
- * in m, emitted radiance, glTF node and material + 1 (0: none). */
+ * in m, emitted radiance, glTF node and material + 1 (0: none), as whole floats. */
 CDL_FIELD(SLOT, ALBEDO, 3)
 CDL_FIELD(SLOT, AOV_NORMAL, 3)
 CDL_FIELD(SLOT, DEPTH, 1)

@@ -7,5 +7,6 @@
 __kernel void clear_first_hit(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL uint *slots) {
   size_t i = get_global_id(0);
   for (uint field = CDL_SLOT_ALBEDO; field < CDL_SLOT_FIELDS; field++)
-    state_set_uint(slots, field, wave->slots, i, 0u);
+    state_set_float(slots, field, wave->slots, i,
+                    field == CDL_SLOT_DEPTH ? CDL_INFINITY : 0.0f);
 }

@@ -33,6 +33,6 @@ __kernel void film(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_FilmChannel
     bad += is_finite(bits) ? 0u : 1u;
   }
   uint first = state_uint(slots, rule.field, wave->slots, begin * pixels + pixel);
-  sums[item] = rule.is_id ? first : as_uint(sum);
-  bad_samples[item] = rule.is_id ? 0u : bad;
+  sums[item] = rule.first_only ? first : as_uint(sum);
+  bad_samples[item] = rule.first_only ? 0u : bad;
 }

@@ -30,5 +30,6 @@ __kernel void generate(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *w
   state_set_uint(path, CDL_PATH_MEDIA, stride, i, camera_media[0]);
   state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, camera_media[1]);
   state_set_uint(work, CDL_WORK_QUEUE, stride, i, used ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, 0u);
   state_set_vec3(slots, CDL_SLOT_RADIANCE, wave->slots, i, v3_all(0.0f));
 }

@@ -7,8 +7,8 @@
 #include "bvh/traverse.h"
 #include "lib/state.h"
 
-/* The queue of the material that was hit. */
-CDL_INLINE uint hit_queue(Hit hit, CDL_GLOBAL const cdl_Triangle *triangles,
+/* The queue of the material that was hit. A path that `ends` here can only see what is emitted. */
+CDL_INLINE uint hit_queue(Hit hit, int ends, CDL_GLOBAL const cdl_Triangle *triangles,
                           CDL_GLOBAL const cdl_Shape *shapes,
                           CDL_GLOBAL const cdl_Material *materials) {
   if (!hit_is_some(hit)) return CDL_QUEUE_ESCAPED;
@@ -16,6 +16,7 @@ CDL_INLINE uint hit_queue(Hit hit, CDL_GLOBAL const cdl_Triangle *triangles,
       materials + shapes[triangles[hit.primitive].shape].material;
   if (material->model == CDL_MODEL_INTERFACE) return CDL_QUEUE_PASS;
   uint emissive = material->flags & CDL_MATERIAL_EMISSIVE ? 1u : 0u;
+  if (ends && !emissive && material->model != CDL_MODEL_UNLIT) return CDL_QUEUE_ENDED;
   return CDL_QUEUE_MODELS + 2u * material->model + emissive;
 }
 
@@ -40,5 +41,8 @@ __kernel void intersect(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *
   state_set_float(path, CDL_PATH_HIT_V, stride, i, hit.v);
   state_set_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i, found ? hit.primitive : 0u);
   state_set_uint(path, CDL_PATH_HIT_INSTANCE, stride, i, found ? hit.instance : 0u);
-  state_set_uint(work, CDL_WORK_QUEUE, stride, i, hit_queue(hit, triangles, shapes, materials));
+  uint depth = counts_depth(state_uint(path, CDL_PATH_COUNTS, stride, i));
+  int ends = depth > 0u && depth >= params->max_depth; /* depth 0 is kept for AOVs */
+  uint queue = hit_queue(hit, ends, triangles, shapes, materials);
+  state_set_uint(work, CDL_WORK_QUEUE, stride, i, queue);
 }

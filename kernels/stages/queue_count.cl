@@ -1,5 +1,5 @@
-/* queue_count: counts, chunk by chunk, how many paths go to each queue.
- * counts[queue * chunks + chunk]; one work-item a chunk of CDL_QUEUE_CHUNK paths. */
+/* queue_count: counts, chunk by chunk, how many paths go to each queue, and how many shadow rays were
+ * traced before. counts[queue * chunks + chunk]; one work-item a chunk of CDL_QUEUE_CHUNK paths. */
 #include "lib/portable.h"
 
 #include "abi/params.h"
@@ -11,13 +11,14 @@ __kernel void queue_count(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const uint *wo
   uint live = wave->live;
   uint chunks = (live + CDL_QUEUE_CHUNK - 1u) / CDL_QUEUE_CHUNK;
   if (chunk >= chunks) return;
-  uint local_counts[CDL_QUEUE_COUNT];
-  for (uint q = 0; q < CDL_QUEUE_COUNT; q++) local_counts[q] = 0u;
+  uint sums[CDL_QUEUE_COUNT + 1u];
+  for (uint q = 0; q <= CDL_QUEUE_COUNT; q++) sums[q] = 0u;
   uint begin = chunk * CDL_QUEUE_CHUNK;
   uint end = begin + CDL_QUEUE_CHUNK < live ? begin + CDL_QUEUE_CHUNK : live;
   for (uint i = begin; i < end; i++) {
     uint queue = state_uint(work, CDL_WORK_QUEUE, wave->stride, i);
-    if (queue < CDL_QUEUE_COUNT) local_counts[queue]++;
+    if (queue < CDL_QUEUE_COUNT) sums[queue]++;
+    sums[CDL_QUEUE_SHADOWS] += state_uint(work, CDL_WORK_SHADOW_COUNT, wave->stride, i);
   }
-  for (uint q = 0; q < CDL_QUEUE_COUNT; q++) counts[q * chunks + chunk] = local_counts[q];
+  for (uint q = 0; q <= CDL_QUEUE_COUNT; q++) counts[q * chunks + chunk] = sums[q];
 }

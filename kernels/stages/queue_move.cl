@@ -24,4 +24,5 @@ __kernel void queue_move(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const uint *sou
   state_set_uint(path, CDL_PATH_HIT_INSTANCE, stride, i, pad ? 0u : instance);
   state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(pad, v3_all(0.0f), throughput));
   state_set_uint(work, CDL_WORK_QUEUE, stride, i, CDL_QUEUE_DEAD);
+  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, 0u);
 }

@@ -25,10 +25,10 @@ __kernel void sample_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wa
   vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
   float distance = state_float(path, CDL_PATH_HIT_T, stride, i);
   uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);
-  uint vertex = counts_vertex(state_uint(path, CDL_PATH_COUNTS, stride, i));
+  uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
   PathRandom random = path_random(params, wave, slot);
   float channel, chance;
-  vertex_random(random, vertex, CDL_PAIR_FREE_FLIGHT, &channel, &chance);
+  vertex_random(random, counts_vertex(counts), CDL_PAIR_FREE_FLIGHT, &channel, &chance);
 
   vec3 glow = homogeneous_emission(emission, v3_add(absorption, scattering), distance);
   vec3 emitted = v3_mul(throughput, glow);
@@ -41,5 +41,6 @@ __kernel void sample_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wa
   vec3 next = v3_mul(throughput, flight.weight);
   state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(alive, next, throughput));
   state_set_float(path, CDL_PATH_HIT_T, stride, i, scattered ? flight.t : distance);
-  state_set_uint(work, CDL_WORK_QUEUE, stride, i, scattered ? CDL_QUEUE_MEDIUM : queue);
+  uint next_queue = counts_depth(counts) < params->max_depth ? CDL_QUEUE_MEDIUM : CDL_QUEUE_ENDED;
+  state_set_uint(work, CDL_WORK_QUEUE, stride, i, scattered ? next_queue : queue);
 }

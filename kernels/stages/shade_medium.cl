@@ -22,14 +22,17 @@ __kernel void shade_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wav
   uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
   int scatters = counts_depth(counts) < params->max_depth;
 
+#ifdef CDL_LIGHTS
   vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
   float phase = phase_hg(v3_dot(direction, to_light), g);
   float mis = light_pdf > 0.0f ? mis_power(light_pdf, phase) : 1.0f;
   vec3 direct = v3_mul(throughput, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
+  direct = v3_scale(direct, scatters ? phase * mis : 0.0f);
   state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, position);
-  state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i,
-                 v3_scale(direct, scatters ? phase * mis : 0.0f));
+  state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
+  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
+#endif
 
   PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
   float u, v, unused, chance;

@@ -43,7 +43,7 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
   int scatters = counts_depth(counts) < params->max_depth;
 
-#if CDL_SHADE_LIT
+#if CDL_SHADE_LIT && defined(CDL_LIGHTS)
   vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
   BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(shading, to_light));
@@ -53,6 +53,7 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   direct = v3_scale(v3_mul(throughput, direct), lit ? mis : 0.0f);
   state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, offset_ray(position, geometric));
   state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
+  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
 #endif
 
   PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
