@@ -85,7 +85,7 @@ static cdl_Status build_mesh(Build *b, uint32_t index, const cdl_BvhMesh *mesh) 
   b->bvh->statistics.dropped += source_fragments(source, tree->fragments, &tree->count);
   if (tree_build(tree, &b->width.tree))
     return no_memory(b, "a mesh's tree", tree->count * (2 * sizeof *tree->nodes));
-  double sah = statistics_add(&b->bvh->statistics, tree);
+  double sah = bvh_statistics_add(&b->bvh->statistics, tree);
   if (sah > b->bvh->statistics.sah) b->bvh->statistics.sah = sah;
   return CDL_OK;
 }

@@ -13,7 +13,7 @@ static double add_subtree(cdl_BvhStatistics *s, const Tree *tree, uint32_t at) {
   return area * node->count;
 }
 
-double statistics_add(cdl_BvhStatistics *statistics, const Tree *tree) {
+double bvh_statistics_add(cdl_BvhStatistics *statistics, const Tree *tree) {
   if (!tree->nodes) return 0.0;
   double cost = add_subtree(statistics, tree, 0), area = box_area(&tree->nodes[0].box);
   statistics->leaf_average = (double)statistics->triangles / (double)statistics->leaves;

@@ -6,6 +6,6 @@
 #include "bvh/tree.h"
 
 /* Adds the leaves of a mesh's tree; returns its SAH cost, in node visits and triangle tests. */
-double statistics_add(cdl_BvhStatistics *statistics, const Tree *tree);
+double bvh_statistics_add(cdl_BvhStatistics *statistics, const Tree *tree);
 
 #endif
