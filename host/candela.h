@@ -82,7 +82,9 @@ typedef struct cdl_Settings {
   uint32_t width, height; /* pixels of the full image; one of them 0: from the camera's aspect */
   uint32_t samples;       /* of each pixel, >= 1 */
   uint32_t first_sample;  /* part of the samples: multiples of 16, but for the end of `samples` */
-  uint32_t sample_count;  /* 0: all from first_sample on */
+  uint32_t sample_count;  /* 0: all from first_sample on. If either is given, the session renders a
+                             part: its .exr files keep block sums for cdl_merge, even if all samples
+                             are in it */
   uint32_t crop[4];       /* x, y, width, height; width 0: the full image */
   const char *camera;     /* name or index; NULL: the first */
   uint32_t max_depth;     /* scattering events after the camera ray, <= 4095 */

@@ -134,7 +134,7 @@ static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
     return log_fail(log, CDL_USAGE,
                     "--samples: %u is not a multiple of %u, nor the rest of --spp %u", count,
                     CDL_FILM_BLOCK, s->samples);
-  if (first || (count && count < s->samples)) {
+  if (first || count) {
     const uint32_t most = MAX_PART_CHANNELS / stored_channels(s->aovs) * CDL_FILM_BLOCK;
     const uint32_t wanted = count ? count : s->samples - first;
     if (wanted > most)
@@ -182,7 +182,7 @@ cdl_Status cdl_session_pixels(const cdl_Session *session, float *rgb) {
 
 char *cdl_session_statistics_json(cdl_Session *session) {
   json_t *json = statistics_of_session(session);
-  char *text = json ? json_dumps(json, JSON_INDENT(2)) : NULL;
+  char *text = statistics_text(json);
   json_decref(json);
   return text;
 }
@@ -192,7 +192,7 @@ char *cdl_session_profile_text(cdl_Session *session) {
   size_t size;
   FILE *out = session->profile ? open_memstream(&text, &size) : NULL;
   if (!out) return NULL;
-  profile_table(out, session->profile, session->stats.render_s);
+  profile_table(out, session->profile, session->stats.render_s - session->resumed_s);
   fclose(out);
   return text;
 }

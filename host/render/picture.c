@@ -77,5 +77,5 @@ cdl_Status cdl_picture_write(cdl_Picture *picture, const char *path, const cdl_D
 }
 
 char *cdl_picture_statistics_json(const cdl_Picture *picture) {
-  return json_dumps(picture->statistics, JSON_INDENT(2));
+  return statistics_text(picture->statistics);
 }

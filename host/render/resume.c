@@ -24,6 +24,7 @@ static void state_apply(cdl_Session *session, const json_t *state) {
   session->next_block = job_integer(state, "next_block");
   session->next_pixel = job_integer(state, "next_pixel");
   s->render_s = json_number_value(json_object_get(state, "render_s"));
+  session->resumed_s = s->render_s;
   s->render_cpu_s = json_number_value(json_object_get(state, "render_cpu_s"));
   s->paths = count(state, "paths");
   s->rays_camera = count(state, "rays_camera");
