@@ -145,11 +145,13 @@ run-bench: all $(BENCH_PROGRAMS)
 C_FILES = $(shell find host kernels tests scripts -name '*.[ch]' -o -name '*.cpp' -o -name '*.cl')
 
 format-check:
-	clang-format --dry-run -Werror $(C_FILES)
+	@clang-format --dry-run -Werror $(C_FILES)
 
+# cppcheck does not see that a loop downwards fills what the next one reads (bvh/tree.c).
 lint:
-	cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
-	  --inline-suppr --suppress=missingIncludeSystem -Ihost -Ikernels $(wildcard host/*/*.c)
+	@cppcheck --quiet --error-exitcode=1 --std=c11 --enable=warning,performance,portability \
+	  --library=scripts/cppcheck.cfg --inline-suppr --suppress=missingIncludeSystem \
+	  --suppress=uninitvar:host/bvh/tree.c -Ihost -Ikernels $(wildcard host/*/*.c)
 
 run-check: format-check lint
 	@OMP_NUM_THREADS=2 $(MAKE) --no-print-directory B=$(B)/asan SANITIZE=address,undefined run-unit
