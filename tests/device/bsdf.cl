@@ -1,5 +1,7 @@
 /* bsdf.cl: the surface models over arrays, for test_bsdf.c. `params` is laid out as PARAMETERS
- * there; results are structures of arrays, one row of get_global_size(0) floats per value. */
+ * there; results are structures of arrays, one row per value. A work-item does a strip of STRIP
+ * neighbours, because PoCL vectorises a loop in the kernel where it often fails at its own loop
+ * over work-items. */
 #include "bsdf/conductor.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
@@ -9,10 +11,18 @@
 #include "lib/rng.h"
 #include "lib/sampling.h"
 
-#define ROW(k) out[(k)*get_global_size(0) + get_global_id(0)]
+#ifdef __clang__ /* which warns when an early pass leaves the loop to a later one */
+#pragma clang diagnostic ignored "-Wpass-failed"
+#endif
+#define STRIP 16u
+#define EACH_ITEM                                                                                  \
+  size_t first = get_global_id(0) * STRIP;                                                         \
+  _Pragma("clang loop vectorize(assume_safety)") for (size_t item = first; item < first + STRIP;   \
+                                                      item++)
+#define ROW(k) out[(k) * (get_global_size(0) * STRIP) + item]
 
-CDL_INLINE float test_unit(uint seed, uint item, uint dimension) {
-  return rng_to_unit(rng_hash2(rng_hash2(item, seed), dimension));
+CDL_INLINE float test_unit(uint seed, size_t item, uint dimension) {
+  return rng_to_unit(rng_hash2(rng_hash2((uint)item, seed), dimension));
 }
 
 CDL_INLINE vec3 test_vec3(__global const float *a) { return v3(a[0], a[1], a[2]); }
@@ -33,7 +43,7 @@ CDL_INLINE BsdfParams test_params(__global const float *a) {
 }
 
 /* A direction of the upper hemisphere; one in eight grazes, one in sixteen is the normal. */
-CDL_INLINE vec3 test_direction(uint seed, uint item, uint dimension) {
+CDL_INLINE vec3 test_direction(uint seed, size_t item, uint dimension) {
   float choice = test_unit(seed, item, dimension + 2u);
   vec3 w = sample_sphere(test_unit(seed, item, dimension), test_unit(seed, item, dimension + 1u));
   float grazing = choice > 0.05f ? 1e-3f : 1e-6f;
@@ -43,19 +53,19 @@ CDL_INLINE vec3 test_direction(uint seed, uint item, uint dimension) {
 }
 
 /* Every range, and its ends one time in four. */
-CDL_INLINE float test_extreme(uint seed, uint item, uint dimension, float low, float high) {
+CDL_INLINE float test_extreme(uint seed, size_t item, uint dimension, float low, float high) {
   float u = test_unit(seed, item, dimension);
   float inner = math_lerp(low, high, (u - 0.125f) * (4.0f / 3.0f));
   return u < 0.125f ? low : (u > 0.875f ? high : inner);
 }
 
-CDL_INLINE vec3 test_extreme3(uint seed, uint item, uint dimension, float low, float high) {
+CDL_INLINE vec3 test_extreme3(uint seed, size_t item, uint dimension, float low, float high) {
   return v3(test_extreme(seed, item, dimension, low, high),
             test_extreme(seed, item, dimension + 1u, low, high),
             test_extreme(seed, item, dimension + 2u, low, high));
 }
 
-CDL_INLINE BsdfParams test_random_params(uint seed, uint item) {
+CDL_INLINE BsdfParams test_random_params(uint seed, size_t item) {
   BsdfParams p;
   float alpha = test_extreme(seed, item, 20u, 0.0f, 1.0f);
   p.base = test_extreme3(seed, item, 21u, 0.0f, 1.0f);
@@ -67,7 +77,7 @@ CDL_INLINE BsdfParams test_random_params(uint seed, uint item) {
   p.ior = test_extreme(seed, item, 27u, 1.0f, 3.0f);
   p.eta = test_extreme3(seed, item, 28u, 0.0f, 4.0f);
   p.k = test_extreme3(seed, item, 31u, 0.0f, 10.0f);
-  p.flags = rng_hash2(item, seed + 99u) & (CDL_MATERIAL_BECKMANN | CDL_MATERIAL_SEPARABLE);
+  p.flags = rng_hash2((uint)item, seed + 99u) & (CDL_MATERIAL_BECKMANN | CDL_MATERIAL_SEPARABLE);
   p.front = test_unit(seed, item, 34u) < 0.5f;
   return p;
 }
@@ -89,46 +99,52 @@ CDL_INLINE uint test_faults(BsdfSample s, BsdfValue e) {
 
 #define TEST_KERNELS(NAME)                                                                         \
   __kernel void sample_##NAME(__global const float *params, __global float *out) {                 \
-    uint item = (uint)get_global_id(0), seed = as_uint(params[19]);                                \
-    BsdfParams p = test_params(params);                                                            \
-    vec3 wo = test_vec3(params + 16);                                                              \
-    BsdfSample s = NAME##_sample(p, wo, test_unit(seed, item, 0u), test_unit(seed, item, 1u),      \
-                                 test_unit(seed, item, 2u));                                       \
-    BsdfValue e = NAME##_evaluate(p, wo, s.wi);                                                    \
-    ROW(0) = s.wi.x;                                                                               \
-    ROW(1) = s.wi.y;                                                                               \
-    ROW(2) = s.wi.z;                                                                               \
-    ROW(3) = s.weight.x;                                                                           \
-    ROW(4) = s.weight.y;                                                                           \
-    ROW(5) = s.weight.z;                                                                           \
-    ROW(6) = s.pdf;                                                                                \
-    ROW(7) = (float)(s.delta + 2 * s.transmitted);                                                 \
-    ROW(8) = e.f_cos.x;                                                                            \
-    ROW(9) = e.f_cos.y;                                                                            \
-    ROW(10) = e.f_cos.z;                                                                           \
-    ROW(11) = e.pdf;                                                                               \
+    uint seed = as_uint(params[19]);                                                               \
+    EACH_ITEM {                                                                                    \
+      BsdfParams p = test_params(params);                                                          \
+      vec3 wo = test_vec3(params + 16);                                                            \
+      BsdfSample s = NAME##_sample(p, wo, test_unit(seed, item, 0u), test_unit(seed, item, 1u),    \
+                                   test_unit(seed, item, 2u));                                     \
+      BsdfValue e = NAME##_evaluate(p, wo, s.wi);                                                  \
+      ROW(0) = s.wi.x;                                                                             \
+      ROW(1) = s.wi.y;                                                                             \
+      ROW(2) = s.wi.z;                                                                             \
+      ROW(3) = s.weight.x;                                                                         \
+      ROW(4) = s.weight.y;                                                                         \
+      ROW(5) = s.weight.z;                                                                         \
+      ROW(6) = s.pdf;                                                                              \
+      ROW(7) = (float)(s.delta + 2 * s.transmitted);                                               \
+      ROW(8) = e.f_cos.x;                                                                          \
+      ROW(9) = e.f_cos.y;                                                                          \
+      ROW(10) = e.f_cos.z;                                                                         \
+      ROW(11) = e.pdf;                                                                             \
+    }                                                                                              \
   }                                                                                                \
   __kernel void pairs_##NAME(__global const float *params, __global float *out) {                  \
-    uint item = (uint)get_global_id(0), seed = as_uint(params[19]);                                \
-    BsdfParams p = test_params(params);                                                            \
-    vec3 wo = test_direction(seed, item, 0u), wi = test_direction(seed, item, 4u);                 \
-    BsdfValue there = NAME##_evaluate(p, wo, wi), back = NAME##_evaluate(p, wi, wo);               \
-    BsdfValue below = NAME##_evaluate(p, wo, v3_neg(wi));                                          \
-    ROW(0) = there.f_cos.x / wi.z;                                                                 \
-    ROW(1) = there.f_cos.y / wi.z;                                                                 \
-    ROW(2) = there.f_cos.z / wi.z;                                                                 \
-    ROW(3) = back.f_cos.x / wo.z;                                                                  \
-    ROW(4) = back.f_cos.y / wo.z;                                                                  \
-    ROW(5) = back.f_cos.z / wo.z;                                                                  \
-    ROW(6) = v3_max(below.f_cos) + below.pdf;                                                      \
+    uint seed = as_uint(params[19]);                                                               \
+    EACH_ITEM {                                                                                    \
+      BsdfParams p = test_params(params);                                                          \
+      vec3 wo = test_direction(seed, item, 0u), wi = test_direction(seed, item, 4u);               \
+      BsdfValue there = NAME##_evaluate(p, wo, wi), back = NAME##_evaluate(p, wi, wo);             \
+      BsdfValue below = NAME##_evaluate(p, wo, v3_neg(wi));                                        \
+      ROW(0) = there.f_cos.x / wi.z;                                                               \
+      ROW(1) = there.f_cos.y / wi.z;                                                               \
+      ROW(2) = there.f_cos.z / wi.z;                                                               \
+      ROW(3) = back.f_cos.x / wo.z;                                                                \
+      ROW(4) = back.f_cos.y / wo.z;                                                                \
+      ROW(5) = back.f_cos.z / wo.z;                                                                \
+      ROW(6) = v3_max(below.f_cos) + below.pdf;                                                    \
+    }                                                                                              \
   }                                                                                                \
   __kernel void stress_##NAME(__global const float *params, __global float *out) {                 \
-    uint item = (uint)get_global_id(0), seed = as_uint(params[19]);                                \
-    BsdfParams p = test_random_params(seed, item);                                                 \
-    vec3 wo = test_direction(seed, item, 0u), wi = test_direction(seed, item, 4u);                 \
-    BsdfSample s = NAME##_sample(p, wo, test_unit(seed, item, 8u), test_unit(seed, item, 9u),      \
-                                 test_unit(seed, item, 10u));                                      \
-    ROW(0) = (float)test_faults(s, NAME##_evaluate(p, wo, wi));                                    \
+    uint seed = as_uint(params[19]);                                                               \
+    EACH_ITEM {                                                                                    \
+      BsdfParams p = test_random_params(seed, item);                                               \
+      vec3 wo = test_direction(seed, item, 0u), wi = test_direction(seed, item, 4u);               \
+      BsdfSample s = NAME##_sample(p, wo, test_unit(seed, item, 8u), test_unit(seed, item, 9u),    \
+                                   test_unit(seed, item, 10u));                                    \
+      ROW(0) = (float)test_faults(s, NAME##_evaluate(p, wo, wi));                                  \
+    }                                                                                              \
   }
 
 TEST_KERNELS(diffuse)

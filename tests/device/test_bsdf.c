@@ -25,7 +25,8 @@
 enum {
   SAMPLES = 1000000,
   PAIRS = 1 << 17,
-  STRESS = 10000000 / 64 * 64,
+  STRESS = 10000384, /* a multiple of the strip times 64 */
+  STRIP = 16,
   RESULTS = 12,
   PARAMETERS = 20,
   CELLS_X = 24,
@@ -133,7 +134,7 @@ static float *run_rows(const char *prefix, const char *model, BsdfParams p, vec3
   HarnessBuffer buffers[] = {{a, sizeof a}, {out, items * rows * sizeof *out}};
   char kernel[64];
   snprintf(kernel, sizeof kernel, "%s_%s", prefix, model);
-  harness_run(harness, kernel, items, buffers, 2);
+  harness_run(harness, kernel, items / STRIP, buffers, 2);
   return out;
 }
 
