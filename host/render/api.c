@@ -187,12 +187,16 @@ char *cdl_session_statistics_json(cdl_Session *session) {
   return text;
 }
 
+/* The profile watches from the moment the device is prepared on, so that is part of its wall time.
+ */
 char *cdl_session_profile_text(cdl_Session *session) {
+  const cdl_RenderStats *stats = &session->stats;
+  const double wall = stats->compile_s + stats->upload_s + stats->render_s - session->resumed_s;
   char *text = NULL;
   size_t size;
   FILE *out = session->profile ? open_memstream(&text, &size) : NULL;
   if (!out) return NULL;
-  profile_table(out, session->profile, session->stats.render_s - session->resumed_s);
+  profile_table(out, session->profile, wall);
   fclose(out);
   return text;
 }
