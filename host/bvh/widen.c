@@ -94,7 +94,7 @@ static void write_group(cdl_BvhTriangle4 *group, const Writer *w, const Fragment
     group->primitive[lane] = CDL_NONE;
     if (lane < count)
       group->primitive[lane] = source_triangle(w->source, fragment_number(fragments + lane), v);
-    for (int i = 0; i < 9; i++) group->v[i][lane] = v[i];
+    for (int i = 0; i < 9; i++) group->v[4 * i + (int)lane] = v[i];
   }
 }
 
@@ -112,7 +112,7 @@ static uint32_t write_leaf(const Writer *w, const TreeNode *leaf) {
 static void set_bounds(cdl_BvhNode8 *node, int child, const Box *box) {
   float bounds[6];
   box_store(box, bounds);
-  for (int i = 0; i < 6; i++) node->bounds[i][child] = bounds[i];
+  for (int i = 0; i < 6; i++) node->bounds[8 * i + child] = bounds[i];
 }
 
 static cdl_BvhNode8 *new_node(const Writer *w, uint32_t *index, const Box *box) {

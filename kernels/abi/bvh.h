@@ -40,9 +40,9 @@ CDL_ABI_SIZE(cdl_BvhTriangle, 48);
 
 /* Width 8: structure of arrays. Unused children are empty boxes. */
 typedef struct cdl_BvhNode8 {
-  float bounds[6][8]; /* min x y z, max x y z of eight children */
-  uint child[8];      /* references */
-  float all[6];       /* box of the node itself: min x y z, max x y z */
+  float bounds[48]; /* eight times min x, then min y, min z, max x, max y, max z of the children */
+  uint child[8];    /* references */
+  float all[6];     /* box of the node itself: min x y z, max x y z */
   uint pad[2];
 } cdl_BvhNode8;
 CDL_ABI_SIZE(cdl_BvhNode8, 256);
@@ -50,7 +50,7 @@ CDL_ABI_SIZE(cdl_BvhNode8, 256);
 /* Width 8: four triangles at once. Unused lanes have primitive CDL_NONE and not-a-number vertices,
  * which no ray hits. */
 typedef struct cdl_BvhTriangle4 {
-  float v[9][4]; /* v0.x v0.y v0.z v1.x … v2.z */
+  float v[36]; /* four times v0.x, then v0.y, v0.z, v1.x … v2.z */
   uint primitive[4];
 } cdl_BvhTriangle4;
 CDL_ABI_SIZE(cdl_BvhTriangle4, 160);

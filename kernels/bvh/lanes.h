@@ -27,6 +27,8 @@ CDL_INLINE float4 lanes4_fma(float4 a, float4 b, float4 c) { return fma(a, b, c)
 CDL_INLINE float8 lanes8_fma(float8 a, float8 b, float8 c) { return fma(a, b, c); }
 CDL_INLINE float8 lanes8_min(float8 a, float8 b) { return a < b ? a : b; }
 CDL_INLINE float8 lanes8_max(float8 a, float8 b) { return a > b ? a : b; }
+CDL_INLINE float4 lanes4_min(float4 a, float4 b) { return a < b ? a : b; }
+CDL_INLINE float4 lanes4_max(float4 a, float4 b) { return a > b ? a : b; }
 CDL_INLINE float4 lanes4_select(int4 condition, float4 a, float4 b) { return condition ? a : b; }
 
 #ifdef CDL_HAS_MOVMSK
@@ -94,6 +96,16 @@ CDL_INLINE float8 lanes8_min(float8 a, float8 b) {
 
 CDL_INLINE float8 lanes8_max(float8 a, float8 b) {
   for (int i = 0; i < 8; i++) a.lane[i] = a.lane[i] > b.lane[i] ? a.lane[i] : b.lane[i];
+  return a;
+}
+
+CDL_INLINE float4 lanes4_min(float4 a, float4 b) {
+  for (int i = 0; i < 4; i++) a[i] = a[i] < b[i] ? a[i] : b[i];
+  return a;
+}
+
+CDL_INLINE float4 lanes4_max(float4 a, float4 b) {
+  for (int i = 0; i < 4; i++) a[i] = a[i] > b[i] ? a[i] : b[i];
   return a;
 }
 

@@ -30,15 +30,18 @@ CDL_INLINE Sheared4 triangle4_shear(BvhRay r, CDL_GLOBAL const BvhTriangle *w) {
   Sheared4 s;
   float4 x = lanes4_all(r.origin_x), y = lanes4_all(r.origin_y), z = lanes4_all(r.origin_z);
   float4 shear_x = lanes4_all(-r.shear_x), shear_y = lanes4_all(-r.shear_y);
-  s.az = lanes4_load(w->v[r.axis_z]) - z;
-  s.bz = lanes4_load(w->v[3u + r.axis_z]) - z;
-  s.cz = lanes4_load(w->v[6u + r.axis_z]) - z;
-  s.ax = lanes4_fma(shear_x, s.az, lanes4_load(w->v[r.axis_x]) - x);
-  s.ay = lanes4_fma(shear_y, s.az, lanes4_load(w->v[r.axis_y]) - y);
-  s.bx = lanes4_fma(shear_x, s.bz, lanes4_load(w->v[3u + r.axis_x]) - x);
-  s.by = lanes4_fma(shear_y, s.bz, lanes4_load(w->v[3u + r.axis_y]) - y);
-  s.cx = lanes4_fma(shear_x, s.cz, lanes4_load(w->v[6u + r.axis_x]) - x);
-  s.cy = lanes4_fma(shear_y, s.cz, lanes4_load(w->v[6u + r.axis_y]) - y);
+  CDL_GLOBAL const float *plane_x = w->v + 4u * r.axis_x;
+  CDL_GLOBAL const float *plane_y = w->v + 4u * r.axis_y;
+  CDL_GLOBAL const float *plane_z = w->v + 4u * r.axis_z;
+  s.az = lanes4_load(plane_z) - z;
+  s.bz = lanes4_load(plane_z + 12) - z;
+  s.cz = lanes4_load(plane_z + 24) - z;
+  s.ax = lanes4_fma(shear_x, s.az, lanes4_load(plane_x) - x);
+  s.ay = lanes4_fma(shear_y, s.az, lanes4_load(plane_y) - y);
+  s.bx = lanes4_fma(shear_x, s.bz, lanes4_load(plane_x + 12) - x);
+  s.by = lanes4_fma(shear_y, s.bz, lanes4_load(plane_y + 12) - y);
+  s.cx = lanes4_fma(shear_x, s.cz, lanes4_load(plane_x + 24) - x);
+  s.cy = lanes4_fma(shear_y, s.cz, lanes4_load(plane_y + 24) - y);
   return s;
 }
 
@@ -56,11 +59,12 @@ CDL_INLINE float4 edge_functions_compensated(float4 a, float4 b, float4 c, float
   return (p - q) + (e - f);
 }
 
-/* Where no two edge functions have different signs. */
+/* Where no two edge functions have different signs, nor is one of them not a number. */
 CDL_INLINE int4 edges_agree(Edges4 e) {
   float4 zero = lanes4_all(0.0f);
-  return ~(((e.e0 < zero) | (e.e1 < zero) | (e.e2 < zero)) &
-           ((e.e0 > zero) | (e.e1 > zero) | (e.e2 > zero)));
+  float4 low = lanes4_min(lanes4_min(e.e0, e.e1), e.e2);
+  float4 high = lanes4_max(lanes4_max(e.e0, e.e1), e.e2);
+  return (low >= zero) | (high <= zero);
 }
 
 /* Compensated where one of them is zero. */
@@ -84,9 +88,9 @@ CDL_INLINE int bvh_take_lanes(BvhRay ray, CDL_GLOBAL const BvhTriangle *w, uint 
   lanes4_store(v4, v);
   for (; mask != 0u; mask &= mask - 1u) {
     uint i = mask_lowest(mask);
-    float enter = triangle_enter(ray, v3(w->v[0][i], w->v[1][i], w->v[2][i]),
-                                 v3(w->v[3][i], w->v[4][i], w->v[5][i]),
-                                 v3(w->v[6][i], w->v[7][i], w->v[8][i]));
+    float enter = triangle_enter(ray, v3(w->v[i], w->v[4u + i], w->v[8u + i]),
+                                 v3(w->v[12u + i], w->v[16u + i], w->v[20u + i]),
+                                 v3(w->v[24u + i], w->v[28u + i], w->v[32u + i]));
     taken |= bvh_take(query, t[i], u[i], v[i], w->primitive[i], enter);
   }
   return taken;
@@ -128,13 +132,14 @@ CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 
 
 /* Which children the ray enters before `limit`, and where. */
 CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit, float enters[8]) {
+  CDL_GLOBAL const float *planes = node->bounds;
   float8 ix = lanes8_all(r.inverse_x), iy = lanes8_all(r.inverse_y), iz = lanes8_all(r.inverse_z);
-  float8 near_x = lanes8_fma(lanes8_load(node->bounds[r.sign_x]), ix, lanes8_all(r.near_x));
-  float8 near_y = lanes8_fma(lanes8_load(node->bounds[r.sign_y]), iy, lanes8_all(r.near_y));
-  float8 near_z = lanes8_fma(lanes8_load(node->bounds[r.sign_z]), iz, lanes8_all(r.near_z));
-  float8 far_x = lanes8_fma(lanes8_load(node->bounds[3u - r.sign_x]), ix, lanes8_all(r.far_x));
-  float8 far_y = lanes8_fma(lanes8_load(node->bounds[5u - r.sign_y]), iy, lanes8_all(r.far_y));
-  float8 far_z = lanes8_fma(lanes8_load(node->bounds[7u - r.sign_z]), iz, lanes8_all(r.far_z));
+  float8 near_x = lanes8_fma(lanes8_load(planes + 8u * r.sign_x), ix, lanes8_all(r.near_x));
+  float8 near_y = lanes8_fma(lanes8_load(planes + 8u * r.sign_y), iy, lanes8_all(r.near_y));
+  float8 near_z = lanes8_fma(lanes8_load(planes + 8u * r.sign_z), iz, lanes8_all(r.near_z));
+  float8 far_x = lanes8_fma(lanes8_load(planes + (24u - 8u * r.sign_x)), ix, lanes8_all(r.far_x));
+  float8 far_y = lanes8_fma(lanes8_load(planes + (40u - 8u * r.sign_y)), iy, lanes8_all(r.far_y));
+  float8 far_z = lanes8_fma(lanes8_load(planes + (56u - 8u * r.sign_z)), iz, lanes8_all(r.far_z));
   float8 enter = lanes8_max(lanes8_max(near_x, lanes8_all(0.0f)), lanes8_max(near_y, near_z));
   float8 leave = lanes8_min(lanes8_min(far_x, lanes8_all(limit)), lanes8_min(far_y, far_z));
   lanes8_store(enter, enters);
