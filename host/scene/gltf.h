@@ -36,6 +36,7 @@ private:
   void add_camera(uint32_t node);
   void add_instances(uint32_t node);
   void add_instance(uint32_t node, uint32_t mesh, const Matrix &to_world, uint32_t object);
+  void push_instance(uint32_t mesh, const Matrix &to_world, uint32_t object);
   uint32_t add_object(uint32_t node, uint32_t copy);
   std::vector<Matrix> gpu_instances(uint32_t node) const;
   void grow_bounds(const cdl_SceneMesh &mesh, const Matrix &to_world);

@@ -1,12 +1,14 @@
 /* gltf_node.cpp: the node graph: transforms, instances, cameras and lights. */
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "scene/accessor.h"
 #include "scene/gltf.h"
 
 namespace {
+
+/* Squares of coordinates stay within single precision. */
+constexpr double FARTHEST = 1e18;
 
 template <typename T> T *push(T *&array, uint32_t count) {
   T *slot = (T *)array_push((void **)&array, count, sizeof(T));
@@ -125,6 +127,9 @@ void GltfScene::grow_bounds(const cdl_SceneMesh &mesh, const Matrix &to_world) {
         in[3] = {mesh.positions[3 * i], mesh.positions[3 * i + 1], mesh.positions[3 * i + 2]};
     matrix_apply(&to_world, in, 1, at);
     for (int c = 0; c < 3; c++) {
+      if (std::fabs(at[c]) > FARTHEST)
+        throw Failed{document_fail(builder->doc, "/meshes", "VALUE_NOT_IN_RANGE",
+                                   "a vertex lies at %g m; %g m is the limit.", at[c], FARTHEST)};
       builder->scene->bounds[0][c] = std::min(builder->scene->bounds[0][c], (float)at[c]);
       builder->scene->bounds[1][c] = std::max(builder->scene->bounds[1][c], (float)at[c]);
     }
@@ -143,11 +148,24 @@ void GltfScene::add_instance(uint32_t node, uint32_t mesh, const Matrix &to_worl
                                  "VALUE_NOT_IN_RANGE",
                                  "its transform in the world is beyond single precision.")};
     }
-  if (scene->meshes[mesh].triangle_count == 0) return;
+  int rank = matrix_rank(&to_world);
+  if (scene->meshes[mesh].triangle_count == 0 || rank < 2) return;
+  if (rank == 2) {
+    uint32_t baked;
+    Matrix identity = matrix_identity();
+    check(bake_mesh(builder, mesh, &to_world, &baked));
+    push_instance(baked, identity, object);
+  } else {
+    push_instance(mesh, to_world, object);
+  }
+}
+
+void GltfScene::push_instance(uint32_t mesh, const Matrix &to_world, uint32_t object) {
+  struct cdl_Scene *scene = builder->scene;
   cdl_SceneInstance *to = push(scene->instances, scene->instance_count);
   to->mesh = mesh;
   to->object = object;
-  std::memcpy(to->to_world, values, sizeof values);
+  matrix_to_float(&to_world, to->to_world);
   scene->instance_count++;
   grow_bounds(scene->meshes[mesh], to_world);
 }

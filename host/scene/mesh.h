@@ -19,6 +19,16 @@ typedef struct PrimitiveSource {
 /* Adds a mesh to the scene; *mesh is CDL_NONE where the primitive has no triangles. */
 cdl_Status build_primitive(Builder *builder, const PrimitiveSource *primitive, uint32_t *mesh);
 
+/* bake.c: moves a vertex, its normal and its tangent. */
+void mesh_move_vertex(const Matrix *to, size_t i, cdl_SceneMesh *mesh);
+
+/* Adds a copy of a mesh, moved. */
+cdl_Status bake_mesh(Builder *builder, uint32_t mesh, const Matrix *to_world, uint32_t *baked);
+
+/* 3 for a transform that has an inverse in single precision, 2 for one that flattens to a plane, 1
+ * for one that leaves a line or a point. */
+int matrix_rank(const Matrix *a);
+
 /* skin.c: moves a mesh's vertices by `joint_count` matrices (joint to world after inverse bind). */
 cdl_Status skin_mesh(Builder *builder, const PrimitiveSource *primitive, const Matrix *joints,
                      uint32_t joint_count, cdl_SceneMesh *mesh);
