@@ -31,6 +31,9 @@ struct cdl_Device {
   cl_command_queue queue;
   char *options;
   KernelSlot kernels[CDL_KERNEL_COUNT];
+  /* One program per group of rows with the same options, at the group's first row. */
+  cl_program programs[CDL_KERNEL_COUNT];
+  unsigned char group_tried[CDL_KERNEL_COUNT];
   double build_seconds;
   uint64_t allocated, peak_allocated;
   cdl_Observer observer;

@@ -1,8 +1,9 @@
 /* program.h: kernels by name, compiled when first asked for.
  *
- * One program per row of kernels.def, built with -cl-std=CL1.2, with correctly rounded division and
- * square root where the device has that option, the row's options and the session's; never with
- * relaxed mathematics. */
+ * Rows of kernels.def with the same options are one program, which takes much less time than one
+ * each; if it does not compile, they are built one by one. Programs are built with -cl-std=CL1.2,
+ * with correctly rounded division and square root where the device has that option, the row's
+ * options and the session's; never with relaxed mathematics. */
 #ifndef CANDELA_DEVICE_PROGRAM_H
 #define CANDELA_DEVICE_PROGRAM_H
 
