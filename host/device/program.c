@@ -38,6 +38,8 @@ static cdl_Status build_failed(const cdl_Device *device, cl_program program, con
  * that of its only kernel; NULL: it has several. */
 static char *build_options(const cdl_Device *device, const char *name, const char *options) {
   char *all = NULL;
+  const char *divide =
+      device->info.has_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "";
   int length =
       asprintf(&all, "-cl-std=CL1.2%s%s%s %s %s", divide, name ? " -DCDL_KERNEL_NAME=" : "",
                name ? name : "", options, device->options);
