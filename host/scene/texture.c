@@ -126,7 +126,7 @@ static cdl_Status decode_one(const Builder *builder, uint32_t index) {
 cdl_Status build_images(Builder *builder) {
   int count = (int)builder->scene->image_count;
   int failed = 0;
-#pragma omp parallel for schedule(dynamic)
+#pragma omp parallel for schedule(dynamic) if (count > 1)
   for (int i = 0; i < count; i++) {
     int stop;
 #pragma omp atomic read

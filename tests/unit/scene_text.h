@@ -29,7 +29,8 @@ static const cdl_Log scene_log = {scene_log_write, NULL};
 /* Also cmocka's group set-up. */
 static int scene_folder_make(void **state) {
   (void)state;
-  strcpy(scene_folder, "/tmp/candela-scene-XXXXXX");
+  const char *in = access("/dev/shm", W_OK) == 0 ? "/dev/shm" : "/tmp"; /* memory is quicker */
+  snprintf(scene_folder, sizeof scene_folder, "%s/candela-scene-XXXXXX", in);
   return mkdtemp(scene_folder) ? 0 : -1;
 }
 
