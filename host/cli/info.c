@@ -171,6 +171,8 @@ static void print_extensions(const struct cdl_Scene *scene) {
   }
 }
 
+static const char *named(const char *name) { return *name ? name : "(no name)"; }
+
 static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
   const float(*b)[3] = scene->bounds;
   printf("%s\n", scene->path);
@@ -191,10 +193,11 @@ static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
   printf("cameras\n");
   for (uint32_t i = 0; i < scene->camera_count; i++)
     printf("  %2u  %-14s %s\n", i, scene->cameras[i].orthographic ? "orthographic" : "perspective",
-           scene->cameras[i].name);
+           named(scene->cameras[i].name));
   printf("materials\n");
   for (uint32_t i = 0; i < scene->material_count; i++)
-    printf("  %2u  %-14s %s\n", i, models[scene->materials[i].model], scene->materials[i].name);
+    printf("  %2u  %-14s %s\n", i, models[scene->materials[i].model],
+           named(scene->materials[i].name));
 }
 
 int cli_info(int argc, char **argv) {

@@ -77,7 +77,10 @@ static cdl_Status map_transmission(Builder *builder, uint32_t index, const json_
   }
   material->model = CDL_MODEL_DIELECTRIC;
   material->thin = json_get_number(volume, "thicknessFactor", 0) <= 0;
-  return CDL_OK;
+  if (!material->thin) return CDL_OK;
+  document_note(builder->doc, NULL, AT("/materials/%u", index),
+                "thin-walled glass is not supported; it is rendered as a solid.");
+  return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
 }
 
 static cdl_Status read_khr(Builder *builder, uint32_t index, const json_t *json,
