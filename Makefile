@@ -103,6 +103,7 @@ UNIT_PROGRAMS := $(filter $(B)/tests/unit/%,$(TEST_PROGRAMS))
 test_helpers = $(patsubst %,$(B)/obj/%.o,$(filter-out tests/$(1)/test_%,$(wildcard tests/$(1)/*.c)))
 
 tests: $(TEST_PROGRAMS)
+$(B)/obj/tests/%: CPPFLAGS += -I.
 
 .SECONDARY: $(TEST_SOURCES:%=$(B)/obj/%.o)
 $(TEST_SOURCES:%=$(B)/obj/%.o): $(B)/kernel_sources.stamp
