@@ -16,8 +16,8 @@
 /* Width 2: a node holds its children's boxes, so a ray fetches only nodes whose box it hits. An
  * empty child has min = +inf, max = -inf and is never entered. */
 typedef struct cdl_BvhNode {
-  float bounds[2][6]; /* of each child: min x y z, max x y z */
-  uint child[2];      /* references, see below */
+  float bounds[12]; /* min x of both, then min y, min z, max x, max y, max z */
+  uint child[2];    /* references, see below */
   uint pad[2];
 } cdl_BvhNode;
 CDL_ABI_SIZE(cdl_BvhNode, 64);

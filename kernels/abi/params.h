@@ -12,8 +12,8 @@ typedef struct cdl_CameraParams {
   float lens_radius;  /* m; 0: pinhole */
   float focus_distance;
   uint orthographic;
-  uint blades; /* of the aperture; 0: round */
-  uint pad[2];
+  uint blades;                /* of the aperture, at least 1; below 3: round */
+  float blade_cos, blade_sin; /* of half a blade's angle */
 } cdl_CameraParams;
 CDL_ABI_SIZE(cdl_CameraParams, 80);
 

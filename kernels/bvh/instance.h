@@ -1,12 +1,10 @@
-/* instance.h: both levels of a ray query, the same for both layouts; included by traverse.h. The
- * layout's file provides
+/* instance.h: both levels of a ray query, the same for both layouts; included by traverse.h.
  *
- *   BvhStack                                  what waits, and where the ray enters it
- *   bvh_ray_in_world(root, o, d)              the ray among the instances of a tree
- *   bvh_enter(ray, node, limit, any, stack, &top)  the child to go to, with the others on the
- * stack; CDL_NONE if none is hit before `limit` bvh_enter_all(ray, node, limit, stack, top)    all
- * that are hit on the stack; the new top bvh_leaf(ray, triangles, leaf, query)     1 if a triangle
- * of the leaf became the best hit */
+ * The layout's file provides BvhStack, what waits and where the ray enters it; bvh_ray_in_world(),
+ * the ray among the instances; bvh_enter(), which tests a node's children and returns the one to go
+ * to, with the others on the stack, or CDL_NONE if none is hit before `limit`; bvh_enter_all(),
+ * which puts all of them on the stack and returns its new top; and bvh_leaf(), which is 1 if a
+ * triangle of the leaf became the best hit. */
 #ifndef CDL_BVH_INSTANCE_H
 #define CDL_BVH_INSTANCE_H
 
@@ -33,7 +31,7 @@ CDL_INLINE int bvh_search_mesh(CDL_GLOBAL const BvhNode *nodes,
   uint top = base, current = root;
   for (;;) {
     if ((current & CDL_BVH_LEAF) == 0u) {
-      current = bvh_enter(ray, nodes + current, query->best.t, any, stack, &top);
+      current = bvh_enter(ray, nodes, current, query->best.t, any, stack, &top);
       if (current != CDL_NONE) continue;
     } else if (bvh_leaf(ray, triangles, current, query) && any) {
       return 1;
@@ -68,7 +66,7 @@ CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhT
     query.instance_enter = stack.enter[top];
     if (query.instance_enter > query.best.t) continue;
     if ((current & CDL_BVH_LEAF) == 0u) {
-      top = bvh_enter_all(world, nodes + current, query.best.t, &stack, top);
+      top = bvh_enter_all(world, nodes, current, query.best.t, &stack, top);
       continue;
     }
     query.instance = current & CDL_BVH_INDEX;

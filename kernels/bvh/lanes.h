@@ -1,4 +1,5 @@
-/* lanes.h: four and eight floats at once, for device and host, rounding as the scalar code does.
+/* lanes.h: two, four and eight floats at once, for device and host, rounding as the scalar code
+ * does.
  *
  * Conditions are integer vectors with all bits set where true; a mask has bit i for lane i, which
  * lanes8_mask_ordered sets where a <= b. */
@@ -16,6 +17,19 @@
 #define CDL_HAS_MOVMSK 1
 #endif
 #endif
+
+/* Asks for the cache line at p, where the compiler can. */
+#ifdef CDL_HAS_MOVMSK
+#define LANES_PREFETCH(p) __builtin_prefetch((const void *)(size_t)(p))
+#else
+#define LANES_PREFETCH(p) ((void)(p))
+#endif
+
+CDL_INLINE float2 lanes2_load(CDL_GLOBAL const float *p) { return vload2(0, p); }
+CDL_INLINE float2 lanes2_all(float a) { return (float2)(a); }
+CDL_INLINE float2 lanes2_fma(float2 a, float2 b, float2 c) { return fma(a, b, c); }
+CDL_INLINE float2 lanes2_min(float2 a, float2 b) { return a < b ? a : b; }
+CDL_INLINE float2 lanes2_max(float2 a, float2 b) { return a > b ? a : b; }
 
 CDL_INLINE float4 lanes4_load(CDL_GLOBAL const float *p) { return vload4(0, p); }
 CDL_INLINE float8 lanes8_load(CDL_GLOBAL const float *p) { return vload8(0, p); }
@@ -54,6 +68,8 @@ CDL_INLINE uint mask_lowest(uint mask) { return 31u - clz(mask & (0u - mask)); }
 
 #else
 
+#define LANES_PREFETCH(p) __builtin_prefetch(p)
+
 typedef float float4 __attribute__((vector_size(16)));
 typedef int int4 __attribute__((vector_size(16)));
 
@@ -61,6 +77,25 @@ typedef int int4 __attribute__((vector_size(16)));
 typedef struct float8 {
   float lane[8];
 } float8;
+
+typedef struct float2 {
+  float x, y;
+} float2;
+
+CDL_INLINE float2 lanes2_load(const float *p) { return (float2){p[0], p[1]}; }
+CDL_INLINE float2 lanes2_all(float a) { return (float2){a, a}; }
+
+CDL_INLINE float2 lanes2_fma(float2 a, float2 b, float2 c) {
+  return (float2){fma(a.x, b.x, c.x), fma(a.y, b.y, c.y)};
+}
+
+CDL_INLINE float2 lanes2_min(float2 a, float2 b) {
+  return (float2){a.x < b.x ? a.x : b.x, a.y < b.y ? a.y : b.y};
+}
+
+CDL_INLINE float2 lanes2_max(float2 a, float2 b) {
+  return (float2){a.x > b.x ? a.x : b.x, a.y > b.y ? a.y : b.y};
+}
 
 CDL_INLINE float4 lanes4_load(const float *p) {
   float4 a;

@@ -9,6 +9,8 @@
 
 #if CDL_BVH_WIDTH == 2
 
+#include "bvh/lanes.h"
+
 typedef cdl_BvhNode BvhNode;
 typedef cdl_BvhTriangle BvhTriangle;
 
@@ -32,10 +34,27 @@ CDL_INLINE int bvh_leaf(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles, uin
 
 /* The ray in world space, padded for the whole scene. */
 CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 d) {
-  CDL_GLOBAL const float *a = root->bounds[0], *b = root->bounds[1];
-  return bvh_ray(o, d, v3(bvh_min(a[0], b[0]), bvh_min(a[1], b[1]), bvh_min(a[2], b[2])),
-                 v3(bvh_max(a[3], b[3]), bvh_max(a[4], b[4]), bvh_max(a[5], b[5])),
+  CDL_GLOBAL const float *b = root->bounds;
+  return bvh_ray(o, d, v3(bvh_min(b[0], b[1]), bvh_min(b[2], b[3]), bvh_min(b[4], b[5])),
+                 v3(bvh_max(b[6], b[7]), bvh_max(b[8], b[9]), bvh_max(b[10], b[11])),
                  BVH_PAD_INSTANCES);
+}
+
+/* Where the ray, cut to 0 ... limit, enters each child, x and y; infinity: nowhere. */
+CDL_INLINE float2 bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit) {
+  CDL_GLOBAL const float *planes = node->bounds;
+  float2 ix = lanes2_all(r.inverse_x), iy = lanes2_all(r.inverse_y), iz = lanes2_all(r.inverse_z);
+  float2 near_x = lanes2_fma(lanes2_load(planes + 2u * r.sign_x), ix, lanes2_all(r.near_x));
+  float2 near_y = lanes2_fma(lanes2_load(planes + 2u * r.sign_y), iy, lanes2_all(r.near_y));
+  float2 near_z = lanes2_fma(lanes2_load(planes + 2u * r.sign_z), iz, lanes2_all(r.near_z));
+  float2 far_x = lanes2_fma(lanes2_load(planes + (6u - 2u * r.sign_x)), ix, lanes2_all(r.far_x));
+  float2 far_y = lanes2_fma(lanes2_load(planes + (10u - 2u * r.sign_y)), iy, lanes2_all(r.far_y));
+  float2 far_z = lanes2_fma(lanes2_load(planes + (14u - 2u * r.sign_z)), iz, lanes2_all(r.far_z));
+  float2 enter = lanes2_max(lanes2_max(near_x, lanes2_all(0.0f)), lanes2_max(near_y, near_z));
+  float2 leave = lanes2_min(lanes2_min(far_x, lanes2_all(limit)), lanes2_min(far_y, far_z));
+  enter.x = enter.x <= leave.x ? enter.x : CDL_INFINITY;
+  enter.y = enter.y <= leave.y ? enter.y : CDL_INFINITY;
+  return enter;
 }
 
 /* References that wait, and where the ray enters them. */
@@ -49,24 +68,26 @@ CDL_INLINE void bvh_put(BvhStack *stack, uint top, uint child, float enter) {
   stack->enter[top] = enter;
 }
 
-CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit, int any,
-                          BvhStack *stack, uint *top) {
-  float enter0 = bvh_box(ray, node->bounds[0], limit);
-  float enter1 = bvh_box(ray, node->bounds[1], limit);
-  uint near_child = enter1 < enter0 ? 1u : 0u;
+CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
+                          int any, BvhStack *stack, uint *top) {
+  CDL_GLOBAL const BvhNode *node = nodes + at;
+  float2 enters = bvh_boxes(ray, node, limit);
+  uint near_child = enters.y < enters.x ? 1u : 0u;
   (void)any;
-  if (!(bvh_min(enter0, enter1) < CDL_INFINITY)) return CDL_NONE;
-  if (bvh_max(enter0, enter1) < CDL_INFINITY)
-    bvh_put(stack, (*top)++, node->child[1u - near_child], bvh_max(enter0, enter1));
+  LANES_PREFETCH(nodes + (node->child[1u - near_child] & CDL_BVH_INDEX));
+  /* Stored in any case, which is cheaper than a branch that is hard to predict. */
+  bvh_put(stack, *top, node->child[1u - near_child], bvh_max(enters.x, enters.y));
+  *top += bvh_max(enters.x, enters.y) < CDL_INFINITY ? 1u : 0u;
+  if (!(bvh_min(enters.x, enters.y) < CDL_INFINITY)) return CDL_NONE;
   return node->child[near_child];
 }
 
-CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit,
+CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                               BvhStack *stack, uint top) {
-  float enter0 = bvh_box(ray, node->bounds[0], limit);
-  float enter1 = bvh_box(ray, node->bounds[1], limit);
-  uint near_child = enter1 < enter0 ? 1u : 0u;
-  float enter = bvh_min(enter0, enter1), later = bvh_max(enter0, enter1);
+  CDL_GLOBAL const BvhNode *node = nodes + at;
+  float2 enters = bvh_boxes(ray, node, limit);
+  uint near_child = enters.y < enters.x ? 1u : 0u;
+  float enter = bvh_min(enters.x, enters.y), later = bvh_max(enters.x, enters.y);
   if (later < CDL_INFINITY) bvh_put(stack, top++, node->child[1u - near_child], later);
   if (enter < CDL_INFINITY) bvh_put(stack, top++, node->child[near_child], enter);
   return top;

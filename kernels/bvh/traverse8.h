@@ -133,6 +133,7 @@ CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 
 /* Which children the ray enters before `limit`, and where. */
 CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit, float enters[8]) {
   CDL_GLOBAL const float *planes = node->bounds;
+  LANES_PREFETCH(node->child);
   float8 ix = lanes8_all(r.inverse_x), iy = lanes8_all(r.inverse_y), iz = lanes8_all(r.inverse_z);
   float8 near_x = lanes8_fma(lanes8_load(planes + 8u * r.sign_x), ix, lanes8_all(r.near_x));
   float8 near_y = lanes8_fma(lanes8_load(planes + 8u * r.sign_y), iy, lanes8_all(r.near_y));
@@ -146,6 +147,12 @@ CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit,
   return lanes8_mask_ordered(enter, leave);
 }
 
+/* Asks for a child's node before it is needed. */
+CDL_INLINE void bvh_prefetch(CDL_GLOBAL const BvhNode *nodes, uint child) {
+  LANES_PREFETCH(nodes[child & CDL_BVH_INDEX].bounds);
+  LANES_PREFETCH(nodes[child & CDL_BVH_INDEX].bounds + 32);
+}
+
 /* References that wait, and where the ray enters them. */
 typedef struct BvhStack {
   uint child[CDL_BVH8_STACK];
@@ -154,12 +161,13 @@ typedef struct BvhStack {
 
 /* Puts the children of `mask` (two or more) on the stack, the nearest on top; returns the new top.
  */
-CDL_INLINE uint bvh_push(BvhStack *stack, uint top, CDL_GLOBAL const uint *children, uint mask,
-                         const float enters[8]) {
+CDL_INLINE uint bvh_push(BvhStack *stack, uint top, CDL_GLOBAL const BvhNode *nodes,
+                         CDL_GLOBAL const uint *children, uint mask, const float enters[8]) {
   uint base = top;
   for (; mask != 0u; mask &= mask - 1u) {
     uint i = mask_lowest(mask), at = top++;
     float enter = enters[i];
+    bvh_prefetch(nodes, children[i]);
     for (; at > base && stack->enter[at - 1u] < enter; at--) {
       stack->enter[at] = stack->enter[at - 1u];
       stack->child[at] = stack->child[at - 1u];
@@ -170,34 +178,40 @@ CDL_INLINE uint bvh_push(BvhStack *stack, uint top, CDL_GLOBAL const uint *child
   return top;
 }
 
-CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit, int any,
-                          BvhStack *stack, uint *top) {
+CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
+                          int any, BvhStack *stack, uint *top) {
+  CDL_GLOBAL const BvhNode *node = nodes + at;
   float enters[8];
   uint hits = bvh_boxes(ray, node, limit, enters);
   if (hits == 0u) return CDL_NONE;
   uint others = hits & (hits - 1u), a = mask_lowest(hits);
   if (others == 0u) return node->child[a];
   if (any) {
-    for (; others != 0u; others &= others - 1u)
-      stack->child[(*top)++] = node->child[mask_lowest(others)];
+    for (; others != 0u; others &= others - 1u) {
+      uint child = node->child[mask_lowest(others)];
+      bvh_prefetch(nodes, child);
+      stack->child[(*top)++] = child;
+    }
     return node->child[a];
   }
   if ((others & (others - 1u)) == 0u) {
     uint b = mask_lowest(others);
     uint later = enters[b] < enters[a] ? a : b;
+    bvh_prefetch(nodes, node->child[a]);
+    bvh_prefetch(nodes, node->child[b]);
     stack->child[*top] = node->child[later];
     stack->enter[(*top)++] = enters[later];
     return node->child[a + b - later];
   }
-  *top = bvh_push(stack, *top, node->child, hits, enters) - 1u;
+  *top = bvh_push(stack, *top, nodes, node->child, hits, enters) - 1u;
   return stack->child[*top];
 }
 
-CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *node, float limit,
+CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                               BvhStack *stack, uint top) {
   float enters[8];
-  uint hits = bvh_boxes(ray, node, limit, enters);
-  return bvh_push(stack, top, node->child, hits, enters);
+  uint hits = bvh_boxes(ray, nodes + at, limit, enters);
+  return bvh_push(stack, top, nodes, nodes[at].child, hits, enters);
 }
 
 #endif

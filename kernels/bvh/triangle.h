@@ -114,13 +114,6 @@ CDL_INLINE float bvh_slabs(BvhRay r, vec3 closer, vec3 farther, float limit) {
   return enter <= leave ? enter : CDL_INFINITY;
 }
 
-/* The same for a box in memory, min x y z, max x y z. */
-CDL_INLINE float bvh_box(BvhRay r, CDL_GLOBAL const float *box, float limit) {
-  vec3 closer = v3(box[r.sign_x], box[r.sign_y], box[r.sign_z]);
-  vec3 farther = v3(box[3u - r.sign_x], box[5u - r.sign_y], box[7u - r.sign_z]);
-  return bvh_slabs(r, closer, farther, limit);
-}
-
 /* a b - c d with each product rounded; its sign is right unless it is zero. */
 CDL_INLINE float edge_function(float a, float b, float c, float d) {
   float p = a * b;

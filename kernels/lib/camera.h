@@ -22,22 +22,22 @@ CDL_INLINE Transform transform_of_camera(CDL_CONSTANT cdl_CameraParams *camera) 
 }
 
 /* A point on the lens in camera space: round, or a regular polygon of `blades` sides with a corner at
- * the top, uniform by area. */
+ * the top, uniform by area. A polygon is a fan of triangles; a point is chosen in one about its own
+ * axis and turned. */
 CDL_INLINE vec3 camera_lens_point(CDL_CONSTANT cdl_CameraParams *camera, float u, float v) {
   float disk_x, disk_y;
   sample_disk(u, v, &disk_x, &disk_y);
-  float blades = (float)(int)(camera->blades > 2u ? camera->blades : 3u);
+  float blades = (float)(int)camera->blades;
   float blade = floor(u * blades);
-  float within = u * blades - blade;
   float reach = sqrt(v);
-  float sine0, cosine0, sine1, cosine1;
-  math_sincos_2pi(blade / blades, &sine0, &cosine0);
-  math_sincos_2pi((blade + 1.0f) / blades, &sine1, &cosine1);
-  float polygon_x = reach * math_lerp(sine0, sine1, within);
-  float polygon_y = reach * math_lerp(cosine0, cosine1, within);
+  float along = reach * camera->blade_cos;
+  float across = reach * camera->blade_sin * fma(2.0f, u * blades - blade, -1.0f);
+  float sine, cosine;
+  math_sincos_2pi((blade + 0.5f) / blades, &sine, &cosine);
   int round = camera->blades < 3u;
-  return v3(camera->lens_radius * (round ? disk_x : polygon_x),
-            camera->lens_radius * (round ? disk_y : polygon_y), 0.0f);
+  float x = round ? disk_x : fma(along, sine, across * cosine);
+  float y = round ? disk_y : fma(along, cosine, -(across * sine));
+  return v3(camera->lens_radius * x, camera->lens_radius * y, 0.0f);
 }
 
 /* x and y in [0,1] from the top left of the image; u and v choose the point on the lens. */
@@ -48,8 +48,8 @@ CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, 
   vec3 lens = camera_lens_point(camera, u, v);
   vec3 focus = v3_scale(v3(sx, sy, -1.0f), camera->focus_distance);
   int ortho = camera->orthographic != 0u;
-  vec3 origin = ortho ? v3(sx, sy, 0.0f) : lens;
-  vec3 towards = ortho ? v3(0.0f, 0.0f, -1.0f) : v3_sub(focus, lens);
+  vec3 origin = v3_select(ortho, v3(sx, sy, 0.0f), lens);
+  vec3 towards = v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_sub(focus, lens));
   CameraRay ray;
   Transform to_world = transform_of_camera(camera);
   ray.origin = transform_point(to_world, origin);

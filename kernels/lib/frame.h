@@ -42,6 +42,15 @@ CDL_INLINE Frame frame_from_tangent(vec3 n, vec3 tangent) {
   return f;
 }
 
+/* A frame of a unit normal and a unit tangent that is orthogonal to it. */
+CDL_INLINE Frame frame_orthonormal(vec3 n, vec3 tangent) {
+  Frame f;
+  f.x = tangent;
+  f.y = v3_cross(n, tangent);
+  f.z = n;
+  return f;
+}
+
 CDL_INLINE vec3 frame_to_local(Frame f, vec3 v) {
   return v3(v3_dot(v, f.x), v3_dot(v, f.y), v3_dot(v, f.z));
 }

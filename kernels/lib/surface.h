@@ -12,7 +12,7 @@ typedef struct SurfacePoint {
   vec3 position;
   vec3 geometric; /* unit; of the front side */
   vec3 normal;    /* unit; interpolated, of the front side */
-  vec3 tangent;   /* unit, orthogonal to the normal */
+  vec3 tangent;   /* of any length, not yet orthogonal; zero where the shape has none */
   float handedness; /* bitangent = handedness x (normal x tangent) */
 } SurfacePoint;
 
@@ -63,8 +63,7 @@ CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance
   vec3 normal = v3_normalize(transform_transposed(to_object, blended));
   s.normal = v3_select(smooth, normal, s.geometric);
   vec3 tangent = transform_direction(to_world, barycentric(t0, t1, t2, u, v));
-  vec3 along = v3_select(has_tangent, tangent, v3_all(0.0f));
-  s.tangent = frame_from_tangent(s.normal, along).x;
+  s.tangent = v3_select(has_tangent, tangent, v3_all(0.0f));
   s.handedness = (has_tangent & (handedness < 0.0f)) ? -1.0f : 1.0f;
   return s;
 }

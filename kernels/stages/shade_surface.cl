@@ -36,8 +36,8 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   BsdfParams p = load_params(work, stride, i, material);
   vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
   vec3 geometric = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
-  Frame shading = frame_from_tangent(state_vec3(work, CDL_WORK_NORMAL, stride, i),
-                                   state_vec3(work, CDL_WORK_TANGENT, stride, i));
+  Frame shading = frame_orthonormal(state_vec3(work, CDL_WORK_NORMAL, stride, i),
+                                    state_vec3(work, CDL_WORK_TANGENT, stride, i));
   vec3 wo = frame_to_local(shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
   vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
   uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);

@@ -13,8 +13,7 @@ CDL_INLINE vec3 mapped_normal(SurfacePoint point, CDL_GLOBAL const cdl_Material 
   float x = fma(2.0f, texel.r, -1.0f) * material->normal_scale;
   float y = fma(2.0f, texel.g, -1.0f) * material->normal_scale * point.handedness;
   float z = fma(2.0f, texel.b, -1.0f);
-  vec3 bitangent = v3_cross(point.normal, point.tangent);
-  vec3 bent = v3_madd(v3_madd(v3_scale(point.normal, z), x, point.tangent), y, bitangent);
+  vec3 bent = frame_to_world(frame_from_tangent(point.normal, point.tangent), v3(x, y, z));
   int present = (material->normal_texture.texture != CDL_NONE) & (v3_length2(bent) > 1e-12f);
   return v3_select(present, v3_normalize(bent), point.normal);
 }
@@ -67,7 +66,7 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *wave,
   state_set_vec3(work, CDL_WORK_POSITION, stride, i, point.position);
   state_set_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i, geometric);
   state_set_vec3(work, CDL_WORK_NORMAL, stride, i, normal);
-  state_set_vec3(work, CDL_WORK_TANGENT, stride, i, point.tangent);
+  state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
   state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
   state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
   state_set_float(work, CDL_WORK_ROUGHNESS, stride, i, roughness);
