@@ -196,7 +196,7 @@ static cdl_Status check_array(Document *doc, const json_t *array, const Member *
         check_value(doc, json_array_get(array, i), member, &(Frame){frame, NULL, i});
     if (status) return status;
   }
-  return member->flags & UNIQUE ? check_unique(doc, array, frame) : CDL_OK;
+  return (member->flags & UNIQUE) && count > 1 ? check_unique(doc, array, frame) : CDL_OK;
 }
 
 static int is_declared(const Document *doc, const char *extension) {
