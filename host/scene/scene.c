@@ -94,6 +94,7 @@ static cdl_Status convert(Document *doc, const cdl_SceneOptions *options, struct
     goto done;
   }
   builder.scene->medium = CDL_NONE;
+  builder.scene->environment.image = CDL_NONE;
   builder.scene->path = string_copy(doc->path);
   for (int c = 0; c < 3; c++)
     builder.scene->bounds[0][c] = INFINITY, builder.scene->bounds[1][c] = -INFINITY;
