@@ -204,6 +204,16 @@ static double expect_cells(const Chart *c, double expected[CELLS_X * CELLS_Y + 1
   return total;
 }
 
+/* The device's evaluation has the host's bits. */
+static void check_bits(const Material *m, vec3 wo, const float *rows) {
+  for (size_t i = 0; i < SAMPLES; i += 16) {
+    vec3 wi = v3(rows[i], rows[SAMPLES + i], rows[2 * SAMPLES + i]);
+    BsdfValue value = evaluate_of(m)(params_of(m), wo, wi);
+    if (value.f_cos.x != rows[8 * SAMPLES + i] || value.pdf != rows[11 * SAMPLES + i])
+      fail_msg("%s: item %zu has other bits than the host's", m->name, i);
+  }
+}
+
 /* pdf and weight of every sample are those of evaluate; returns the mean weight. */
 static double check_samples(const Material *m, const float *rows) {
   double sum = 0;
@@ -240,6 +250,7 @@ static void test_sampling(void **state) {
     vec3 wo = view_of(views[i % VIEWS]);
     Chart chart = chart_of(m, wo);
     float *rows = run_rows("sample", m->model, chart.p, wo, (uint)i + 1, SAMPLES, RESULTS);
+    check_bits(m, wo, rows);
     double albedo = check_samples(m, rows), below;
     double total = expect_cells(&chart, expected);
     double p = chi2_of(&chart, rows, expected, &below);
