@@ -277,9 +277,9 @@ static void traced_open(Traced *traced, cdl_Device *device, const Mesh *mesh, in
   bvh_statistics_line(&traced->bvh.statistics, width, line, sizeof line);
   puts(line);
   cdl_Bvh *b = &traced->bvh;
-  need_ok(buffer_create(device, "nodes", b->node_bytes, b->nodes, &traced->nodes));
-  need_ok(buffer_create(device, "triangles", b->triangle_bytes, b->triangles, &traced->triangles));
-  need_ok(buffer_create(device, "instances", b->instance_bytes, b->instances, &traced->instances));
+  need_ok(buffer_wrap(device, "nodes", b->node_bytes, b->nodes, &traced->nodes));
+  need_ok(buffer_wrap(device, "triangles", b->triangle_bytes, b->triangles, &traced->triangles));
+  need_ok(buffer_wrap(device, "instances", b->instance_bytes, b->instances, &traced->instances));
   snprintf(flags, sizeof flags, "-DCDL_BVH_WIDTH=%d", width);
   need_ok(device_kernel_from_text(device, kernel_text, "trace", flags, &traced->closest));
   snprintf(flags, sizeof flags, "-DCDL_BVH_WIDTH=%d -DBENCH_ANY", width);

@@ -2,6 +2,7 @@
 #include "bvh/bvh.h"
 
 #include <stdlib.h>
+#include <sys/mman.h>
 
 #include "bvh/instances.h"
 #include "bvh/layout.h"
@@ -21,7 +22,7 @@ typedef struct Width {
 static const Width widths[2] = {
     {sizeof(cdl_BvhNode),
      sizeof(cdl_BvhTriangle),
-     {TREE_BINS, 4, TREE_DEPTH_BOTTOM, 1, 1.0f},
+     {TREE_BINS, 4, TREE_DEPTH_BOTTOM, 1, 0.5f},
      8,
      flatten_measure,
      flatten_write},
@@ -63,11 +64,18 @@ static Width choose_width(const cdl_BvhOptions *options) {
   return width;
 }
 
-/* Arrays for kernels: aligned to cache lines, zeroed, at least 64 bytes so that a buffer exists. */
+/* Arrays for kernels: zeroed, and at least 64 bytes so that a buffer exists. Large ones ask for huge
+ * pages: rays jump about in them, and with small pages half of their time goes into page walks. */
 static void *allocate(size_t *bytes) {
-  size_t size = *bytes ? (*bytes + 63) / 64 * 64 : 64;
-  void *memory = aligned_alloc(64, size);
-  if (memory) memset(memory, 0, size);
+  const size_t huge = (size_t)2 << 20;
+  size_t align = *bytes >= huge ? huge : 64;
+  size_t size = *bytes ? (*bytes + align - 1) / align * align : align;
+  void *memory = aligned_alloc(align, size);
+  if (!memory) return NULL;
+#ifdef MADV_HUGEPAGE
+  if (align == huge) madvise(memory, size, MADV_HUGEPAGE); /* only a wish */
+#endif
+  memset(memory, 0, size);
   if (*bytes == 0) *bytes = 64;
   return memory;
 }

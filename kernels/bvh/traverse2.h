@@ -40,8 +40,9 @@ CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 
                  BVH_PAD_INSTANCES);
 }
 
-/* Where the ray, cut to 0 ... limit, enters each child, x and y; infinity: nowhere. */
-CDL_INLINE float2 bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit) {
+/* Where the ray enters each child, x and y, and which it does enter before `limit`: bits 0 and 1.
+ */
+CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit, float2 *enters) {
   CDL_GLOBAL const float *planes = node->bounds;
   float2 ix = lanes2_all(r.inverse_x), iy = lanes2_all(r.inverse_y), iz = lanes2_all(r.inverse_z);
   float2 near_x = lanes2_fma(lanes2_load(planes + 2u * r.sign_x), ix, lanes2_all(r.near_x));
@@ -52,9 +53,8 @@ CDL_INLINE float2 bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limi
   float2 far_z = lanes2_fma(lanes2_load(planes + (14u - 2u * r.sign_z)), iz, lanes2_all(r.far_z));
   float2 enter = lanes2_max(lanes2_max(near_x, lanes2_all(0.0f)), lanes2_max(near_y, near_z));
   float2 leave = lanes2_min(lanes2_min(far_x, lanes2_all(limit)), lanes2_min(far_y, far_z));
-  enter.x = enter.x <= leave.x ? enter.x : CDL_INFINITY;
-  enter.y = enter.y <= leave.y ? enter.y : CDL_INFINITY;
-  return enter;
+  *enters = enter;
+  return (enter.x <= leave.x ? 1u : 0u) | (enter.y <= leave.y ? 2u : 0u);
 }
 
 /* References that wait, and where the ray enters them. */
@@ -71,25 +71,26 @@ CDL_INLINE void bvh_put(BvhStack *stack, uint top, uint child, float enter) {
 CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                           int any, BvhStack *stack, uint *top) {
   CDL_GLOBAL const BvhNode *node = nodes + at;
-  float2 enters = bvh_boxes(ray, node, limit);
-  uint near_child = enters.y < enters.x ? 1u : 0u;
+  float2 enters;
+  uint hits = bvh_boxes(ray, node, limit, &enters);
   (void)any;
-  LANES_PREFETCH(nodes + (node->child[1u - near_child] & CDL_BVH_INDEX));
-  /* Stored in any case, which is cheaper than a branch that is hard to predict. */
-  bvh_put(stack, *top, node->child[1u - near_child], bvh_max(enters.x, enters.y));
-  *top += bvh_max(enters.x, enters.y) < CDL_INFINITY ? 1u : 0u;
-  if (!(bvh_min(enters.x, enters.y) < CDL_INFINITY)) return CDL_NONE;
-  return node->child[near_child];
+  if (hits == 0u) return CDL_NONE;
+  if (hits != 3u) return node->child[hits - 1u];
+  uint later = enters.y < enters.x ? 0u : 1u;
+  LANES_PREFETCH(nodes + (node->child[later] & CDL_BVH_INDEX));
+  bvh_put(stack, (*top)++, node->child[later], bvh_max(enters.x, enters.y));
+  return node->child[1u - later];
 }
 
 CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                               BvhStack *stack, uint top) {
-  CDL_GLOBAL const BvhNode *node = nodes + at;
-  float2 enters = bvh_boxes(ray, node, limit);
-  uint near_child = enters.y < enters.x ? 1u : 0u;
-  float enter = bvh_min(enters.x, enters.y), later = bvh_max(enters.x, enters.y);
-  if (later < CDL_INFINITY) bvh_put(stack, top++, node->child[1u - near_child], later);
-  if (enter < CDL_INFINITY) bvh_put(stack, top++, node->child[near_child], enter);
+  float2 enters;
+  uint hits = bvh_boxes(ray, nodes + at, limit, &enters);
+  uint later = enters.y < enters.x ? 0u : 1u;
+  if ((hits >> later & 1u) != 0u)
+    bvh_put(stack, top++, nodes[at].child[later], later == 0u ? enters.x : enters.y);
+  if ((hits >> (1u - later) & 1u) != 0u)
+    bvh_put(stack, top++, nodes[at].child[1u - later], later == 0u ? enters.y : enters.x);
   return top;
 }
 

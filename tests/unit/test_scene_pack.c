@@ -11,8 +11,7 @@
 #define RED 0xff0000ffu /* RGBA, the first byte lowest */
 #define BLUE 0xffff0000u
 
-/* A red and a blue texel on a triangle that a point light shines at; `more` goes into the scene. */
- */
+/* A red and a blue texel on a triangle that a point light shines at; `more` joins the scene. */
 static struct cdl_Scene *load_picture(const char *more) {
   static const float corners[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
   return scene_from(
