@@ -64,8 +64,9 @@ static Width choose_width(const cdl_BvhOptions *options) {
   return width;
 }
 
-/* Arrays for kernels: zeroed, and at least 64 bytes so that a buffer exists. Large ones ask for huge
- * pages: rays jump about in them, and with small pages half of their time goes into page walks. */
+/* Arrays for kernels: zeroed, and at least 64 bytes so that a buffer exists. Large ones ask for
+ * huge pages: rays jump about in them, and with small pages half of their time goes into page
+ * walks. */
 static void *allocate(size_t *bytes) {
   const size_t huge = (size_t)2 << 20;
   size_t align = *bytes >= huge ? huge : 64;

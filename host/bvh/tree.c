@@ -159,7 +159,7 @@ static float leaf_cost(const TreeOptions *options, uint32_t count, float area) {
 /* Best of the planes between the bins of one axis; `split` is improved or left alone. */
 static void split_axis(const TreeOptions *options, const Bins *bins, int count, int axis,
                        Split *split) {
-  float right_cost[TREE_BINS];
+  float right_cost[TREE_BINS] = {0};
   uint32_t right = 0, left = 0;
   Box box = box_empty();
   for (int i = count - 1; i > 0; i--) {

@@ -5,11 +5,10 @@
 #ifndef CDL_BVH_TRAVERSE2_H
 #define CDL_BVH_TRAVERSE2_H
 
+#include "bvh/lanes.h"
 #include "bvh/triangle.h"
 
 #if CDL_BVH_WIDTH == 2
-
-#include "bvh/lanes.h"
 
 typedef cdl_BvhNode BvhNode;
 typedef cdl_BvhTriangle BvhTriangle;

@@ -7,11 +7,10 @@
 #ifndef CDL_BVH_TRAVERSE8_H
 #define CDL_BVH_TRAVERSE8_H
 
+#include "bvh/lanes.h"
 #include "bvh/triangle.h"
 
 #if CDL_BVH_WIDTH == 8
-
-#include "bvh/lanes.h"
 
 typedef cdl_BvhNode8 BvhNode;
 typedef cdl_BvhTriangle4 BvhTriangle;
