@@ -34,16 +34,20 @@ CDL_INLINE float math_safe_sqrt(float x) { return sqrt(math_max(0.0f, x)); }
 
 CDL_INLINE float math_abs(float x) { return as_float(as_uint(x) & 0x7fffffffu); }
 
+/* The sign bit of x, and none for -0: compilers that turn x + 0 into x make the sign of a zero differ
+ * from device to device, so nothing may depend on it. */
+CDL_INLINE uint math_sign_bit(float x) { return x < 0.0f ? 0x80000000u : 0u; }
+
 CDL_INLINE float math_copysign(float magnitude, float sign) {
-  return as_float((as_uint(magnitude) & 0x7fffffffu) | (as_uint(sign) & 0x80000000u));
+  return as_float((as_uint(magnitude) & 0x7fffffffu) | math_sign_bit(sign));
 }
 
-/* +1 or -1 by the sign bit: -1 for -0 */
+/* -1 for negative x, else 1 */
 CDL_INLINE float math_sign(float x) { return math_copysign(1.0f, x); }
 
 /* x with its sign flipped where `sign` is negative: x * math_sign(sign) */
 CDL_INLINE float math_mulsign(float x, float sign) {
-  return as_float(as_uint(x) ^ (as_uint(sign) & 0x80000000u));
+  return as_float(as_uint(x) ^ math_sign_bit(sign));
 }
 
 /* The next float towards +infinity; +infinity stays. */
@@ -64,14 +68,22 @@ CDL_INLINE int math_round_int(float x) { return (int)(as_uint(x + 12582912.0f) -
 /* 2^n for -126 <= n <= 127 */
 CDL_INLINE float math_pow2i(int n) { return as_float((uint)(n + 127) << 23); }
 
+/* x, for compilers a result of `before` as well. PoCL lets LLVM pack like operations on two values of
+ * one work-item into a vector of two before it looks at the loop over work-items, and one such vector
+ * keeps that loop from being vectorised, which costs a factor of 5. What depends on `before` cannot be
+ * packed with it. It costs nothing: the zero is known, and gone, once the work-group's size is. */
+CDL_INLINE float math_after(float before, float x) {
+  return as_float(as_uint(x) ^ (as_uint(before) & CDL_HIDDEN_ZERO));
+}
+
 /* ---- sine and cosine ---- */
 
 /* Turns (sin, cos) of the reduced angle into those of the angle, `quadrant` quarter turns on. */
 CDL_INLINE void math_rotate_quadrant(int quadrant, float s, float c, float *sine, float *cosine) {
   int odd = quadrant & 1;
   float a = odd ? c : s;
-  float b = odd ? s : c;
   *sine = as_float(as_uint(a) ^ ((uint)(quadrant & 2) << 30));
+  float b = math_after(*sine, odd ? s : c);
   *cosine = as_float(as_uint(b) ^ ((uint)((quadrant + 1) & 2) << 30));
 }
 
@@ -87,6 +99,7 @@ CDL_INLINE void math_sincos_2pi(float turns, float *sine, float *cosine) {
   float s = fma(fma(-75.4075546f, z, 81.5926895f), z, -41.3416634f);
   float low = r * fma(s, z, -1.95191902e-7f);
   s = math_abs(r) < MATH_TINY ? r * 6.28318548f : fma(r, 6.28318548f, low);
+  z = math_after(s, z);
   float c = fma(fma(fma(58.6056137f, z, -85.4243317f), z, 64.9391479f), z, -19.7392082f);
   math_rotate_quadrant(quadrant, s, fma(c, z, 1.0f), sine, cosine);
 }
@@ -128,10 +141,11 @@ CDL_INLINE float math_cos(float x) {
 /* ---- exponentials ---- */
 
 /* x 2^n for x in [0.5, 2] and |n| <= 250, in two steps so that neither factor leaves the normal
- * range and only the last product rounds. */
+ * range and only the last product rounds. The factors are made in unlike ways, see math_after. */
 CDL_INLINE float math_scale(float x, int n) {
-  int half_n = n >> 1;
-  return x * math_pow2i(half_n) * math_pow2i(n - half_n);
+  uint half_bits = (uint)((n >> 1) + 127) << 23;
+  uint rest_bits = ((uint)(n + 254) << 23) - half_bits;
+  return x * as_float(half_bits) * as_float(rest_bits);
 }
 
 /* 2^f for |f| <= 1/2 */
@@ -295,7 +309,7 @@ CDL_INLINE float math_pow(float base, float exponent) {
  * largest finite float. */
 CDL_INLINE float math_atan2(float y, float x) {
   float ax = math_min(math_abs(x), 3.40282347e+38f);
-  float ay = math_min(math_abs(y), 3.40282347e+38f);
+  float ay = math_min(math_abs(math_after(ax, y)), 3.40282347e+38f);
   float large = math_max(ax, ay);
   float small = math_min(ax, ay);
   /* keeps the sum below finite */
@@ -312,7 +326,7 @@ CDL_INLINE float math_atan2(float y, float x) {
   p = t * z * fma(p, z, -0.333329499f);
   /* base +- (t + p), the constants' low parts first */
   int swap = ay > ax;
-  int left = as_int(x) < 0;
+  int left = x < 0.0f;
   float high = (beyond ? 0.785398185f : 0.0f);
   float low = (beyond ? -2.18556941e-8f : 0.0f);
   high = swap ? 1.57079637f - high : high;
