@@ -15,10 +15,10 @@
 #include "bvh/traverse.h"
 #include "harness.h"
 
-enum { RAYS = 32768, ITEMS = 4096, PLATFORMS = 4 };
+enum { RAYS = 32768, ITEMS = 4096, PLATFORMS = 3 };
 
 static const char *const platform_names[PLATFORMS] = {"Portable Computing Language", "rusticl",
-                                                      "NVIDIA", "Oclgrind"};
+                                                      "NVIDIA"};
 
 /* Rays as structure of arrays: o x y z, d x y z, tmax. Hits as five words and whether occluded. */
 static const char answer_text[] =
