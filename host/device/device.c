@@ -38,6 +38,16 @@ static cdl_Status settle_exactness(cdl_Device *device) {
   return device_measure_exactness(device);
 }
 
+/* Strips are for the compiler of PoCL on CPUs (lib/stage.h); $CANDELA_STRIP, a power of two up to
+ * CDL_LOCAL_SIZE, is for those who compare. */
+static size_t strip_length(const cdl_DeviceInfo *info) {
+  const char *wanted = getenv("CANDELA_STRIP");
+  size_t length = wanted ? strtoul(wanted, NULL, 10) : 0;
+  if (length && length <= CDL_LOCAL_SIZE && !(length & (length - 1))) return length;
+  int pocl = strstr(info->platform, "Portable Computing Language") != NULL;
+  return pocl && info->type & CL_DEVICE_TYPE_CPU ? 16 : 1;
+}
+
 cdl_Status device_open(const cdl_Log *log, const char *selector, cdl_Device **opened) {
   cdl_DeviceInfo *list = NULL;
   size_t count = 0, chosen = 0;
@@ -53,6 +63,7 @@ cdl_Status device_open(const cdl_Log *log, const char *selector, cdl_Device **op
   }
   device->log = log;
   device->info = list[chosen];
+  device->strip = strip_length(&device->info);
   device->host_timed = !device->info.timer_ns;
   if ((status = open_queue(device)) || (status = settle_exactness(device))) goto done;
   *opened = device;

@@ -13,6 +13,7 @@ enum { CDL_VARIANTS = 4 };
 typedef struct KernelSlot {
   cl_kernel kernel; /* NULL: not built */
   size_t local_size;
+  size_t strip; /* items that a work-item does */
   int argument_count;
   cl_mem bound[CDL_MAX_ARGUMENTS]; /* what is set now; NULL: nothing */
   unsigned char launched[CDL_VARIANTS];
@@ -30,6 +31,7 @@ struct cdl_Device {
   cl_context context;
   cl_command_queue queue;
   char *options;
+  size_t strip; /* items that a work-item of a STRIPS kernel does */
   KernelSlot kernels[CDL_KERNEL_COUNT];
   /* One program per group of rows with the same options, at the group's first row. */
   cl_program programs[CDL_KERNEL_COUNT];
@@ -44,8 +46,11 @@ struct cdl_Device {
 };
 
 /* The argument names of a kernel as indices into cdl_Bindings; parsed once per process. */
+enum { CDL_RANGE_ITEMS, CDL_RANGE_STRIPS };
+
 typedef struct KernelRow {
   const char *name, *file, *options, *arguments;
+  int range; /* CDL_RANGE_* */
 } KernelRow;
 
 extern const KernelRow kernel_rows[CDL_KERNEL_COUNT];

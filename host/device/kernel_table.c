@@ -3,13 +3,14 @@
 #include <pthread.h>
 #include <string.h>
 
-#define CDL_KERNEL(name, file, options, arguments) {#name, file, options, arguments},
+#define CDL_KERNEL(name, file, range, options, arguments)                                          \
+  {#name, file, options, arguments, CDL_RANGE_##range},
 const KernelRow kernel_rows[CDL_KERNEL_COUNT] = {
 #include "device/kernels.def"
 };
 #undef CDL_KERNEL
 
-#define CDL_KERNEL(name, file, options, arguments) #name,
+#define CDL_KERNEL(name, file, range, options, arguments) #name,
 static const char *const names[CDL_KERNEL_COUNT] = {
 #include "device/kernels.def"
 };

@@ -36,13 +36,14 @@ static cdl_Status build_failed(const cdl_Device *device, cl_program program, con
 
 /* The options of a program; exact arithmetic also needs the pragma in lib/portable.h. `name` is
  * that of its only kernel; NULL: it has several. */
-static char *build_options(const cdl_Device *device, const char *name, const char *options) {
+static char *build_options(const cdl_Device *device, const char *name, const char *options,
+                           size_t strip) {
   char *all = NULL;
   const char *divide =
       device->info.has_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "";
   int length =
-      asprintf(&all, "-cl-std=CL1.2%s%s%s %s %s", divide, name ? " -DCDL_KERNEL_NAME=" : "",
-               name ? name : "", options, device->options);
+      asprintf(&all, "-cl-std=CL1.2 -DCDL_STRIP=%zu%s%s%s %s %s", strip, divide,
+               name ? " -DCDL_KERNEL_NAME=" : "", name ? name : "", options, device->options);
   return length < 0 ? NULL : all;
 }
 
@@ -69,10 +70,10 @@ static cdl_Status create_kernel(const cdl_Device *device, cl_program program, co
 
 /* A program of one kernel, which keeps it. */
 static cdl_Status build_text(cdl_Device *device, const char *text, const char *name,
-                             const char *options, cl_kernel *kernel) {
+                             const char *options, size_t strip, cl_kernel *kernel) {
   cl_int code;
   cl_program program = NULL;
-  char *all = build_options(device, name, options);
+  char *all = build_options(device, name, options, strip);
   if (!all) return log_fail(device->log, CDL_DEVICE, "not enough memory to build %s", name);
   cdl_Status status = build_program(device, text, all, &program, &code);
   if (!status && code) status = build_failed(device, program, name, code);
@@ -87,7 +88,7 @@ cdl_Status device_kernel_from_text(cdl_Device *device, const char *source, const
   char *text = NULL;
   *kernel = NULL;
   cdl_Status status = source_flatten_text(device->log, name, source, &text);
-  if (!status) status = build_text(device, text, name, options ? options : "", kernel);
+  if (!status) status = build_text(device, text, name, options ? options : "", 1, kernel);
   free(text);
   return status;
 }
@@ -114,10 +115,15 @@ size_t kernel_local_size(const cdl_Device *device, cl_kernel kernel) {
   return most && most < CDL_LOCAL_SIZE ? most : CDL_LOCAL_SIZE;
 }
 
+static size_t row_strip(const cdl_Device *device, int row) {
+  return kernel_rows[row].range == CDL_RANGE_STRIPS ? device->strip : 1;
+}
+
 /* Rows with the same options are one program: PoCL takes 0.1 s to build a program of any size, and
  * 0.02 s to find out that it is in its cache. */
 static int in_group(cdl_KernelId first, int row) {
-  return !strcmp(kernel_rows[row].options, kernel_rows[first].options);
+  return !strcmp(kernel_rows[row].options, kernel_rows[first].options) &&
+         kernel_rows[row].range == kernel_rows[first].range;
 }
 
 static cdl_KernelId group_of(cdl_KernelId id) {
@@ -155,7 +161,7 @@ static cl_program build_group(cdl_Device *device, cdl_KernelId first) {
   cl_program program = NULL;
   cl_int code = 0;
   char *text = NULL, *includes = group_includes(first);
-  char *options = build_options(device, NULL, kernel_rows[first].options);
+  char *options = build_options(device, NULL, kernel_rows[first].options, row_strip(device, first));
   device->log = &silent;
   if (includes && options && !source_flatten_text(&silent, "kernels", includes, &text))
     build_program(device, text, options, &program, &code);
@@ -184,7 +190,8 @@ static cdl_Status build_kernel(cdl_Device *device, cdl_KernelId id, cl_kernel *k
   if (program) return create_kernel(device, program, row->name, kernel);
   char *text = NULL;
   cdl_Status status = source_flatten(device->log, row->file, &text);
-  if (!status) status = build_text(device, text, row->name, row->options, kernel);
+  if (!status)
+    status = build_text(device, text, row->name, row->options, row_strip(device, id), kernel);
   free(text);
   return status;
 }
@@ -205,7 +212,9 @@ static cdl_Status build_slot(cdl_Device *device, cdl_KernelId id) {
   }
   memset(slot, 0, sizeof *slot);
   slot->kernel = kernel;
+  slot->strip = row_strip(device, id);
   slot->local_size = kernel_local_size(device, kernel);
+  if (slot->strip > 1) slot->local_size = CDL_LOCAL_SIZE / slot->strip;
   slot->argument_count = kernel_arguments(id)->count;
   return CDL_OK;
 }

@@ -9,7 +9,7 @@
 
 #include "device/device.h"
 
-#define CDL_KERNEL(name, file, options, arguments) CDL_KERNEL_##name,
+#define CDL_KERNEL(name, file, range, options, arguments) CDL_KERNEL_##name,
 typedef enum cdl_KernelId {
 #include "device/kernels.def"
   CDL_KERNEL_COUNT

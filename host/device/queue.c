@@ -43,13 +43,19 @@ static cdl_Status launch_fail(const cdl_Device *device, cdl_KernelId id, cl_int 
 }
 
 /* A launch with an idle device before and after it, timed by the host as well. */
+/* A range of items as one of work-items. */
+static size_t in_strips(const KernelSlot *slot, size_t items) {
+  return (items + slot->strip - 1) / slot->strip;
+}
+
 static cdl_Status run_alone(cdl_Device *device, cdl_KernelId id, KernelSlot *slot, size_t offset,
                             size_t count, int first) {
   cl_event event = NULL;
   cdl_Status status = device_finish(device);
   if (status) return status;
   double start = clock_now();
-  cl_int code = enqueue(device, slot->kernel, slot->local_size, offset, count, &event);
+  cl_int code = enqueue(device, slot->kernel, slot->local_size, in_strips(slot, offset),
+                        in_strips(slot, count), &event);
   if (code) return launch_fail(device, id, code);
   code = clFinish(device->queue);
   if (code) {
@@ -65,14 +71,14 @@ cdl_Status device_run(cdl_Device *device, cdl_KernelId id, const cdl_Bindings *b
   cdl_Status status = kernel_slot(device, id, &slot);
   if (!status) status = set_arguments(device, id, slot, bindings);
   if (status || !count) return status;
-  int variant = launch_variant(offset, count);
+  int variant = launch_variant(offset, in_strips(slot, count));
   int first = !slot->launched[variant];
   slot->launched[variant] = 1;
   if (device->observed && (first || device->host_timed))
     return run_alone(device, id, slot, offset, count, first);
   cl_event event = NULL;
-  cl_int code = enqueue(device, slot->kernel, slot->local_size, offset, count,
-                        device->observed ? &event : NULL);
+  cl_int code = enqueue(device, slot->kernel, slot->local_size, in_strips(slot, offset),
+                        in_strips(slot, count), device->observed ? &event : NULL);
   if (code) return launch_fail(device, id, code);
   return event ? pending_add(device, event, id, count) : CDL_OK;
 }

@@ -1,5 +1,5 @@
-/* camera_medium: which media the camera is inside of: follows a ray from outside the scene to it and
- * keeps account of what it enters and leaves. One work-item, once a render. */
+/* camera_medium: which media the camera is inside of: follows a ray from outside the scene to it
+ * and keeps account of what it enters and leaves. One work-item, once a render. */
 #include "lib/portable.h"
 
 #include "abi/params.h"
@@ -10,8 +10,7 @@ __kernel void camera_medium(CDL_CONSTANT cdl_Params *params, CDL_GLOBAL const Bv
                             CDL_GLOBAL const BvhTriangle *bvh_triangles,
                             CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                             CDL_GLOBAL const cdl_Triangle *triangles,
-                            CDL_GLOBAL const cdl_Shape *shapes,
-                            CDL_GLOBAL const float *attributes,
+                            CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
                             CDL_GLOBAL const cdl_Material *materials,
                             CDL_GLOBAL uint *camera_media) {
   if (get_global_id(0) != 0) return;

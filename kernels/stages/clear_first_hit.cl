@@ -1,12 +1,12 @@
 /* clear_first_hit: AOVs of paths that meet no surface. */
-#include "lib/portable.h"
+#include "lib/stage.h"
 
 #include "abi/params.h"
 #include "lib/state.h"
 
 __kernel void clear_first_hit(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL uint *slots) {
-  size_t i = get_global_id(0);
-  for (uint field = CDL_SLOT_ALBEDO; field < CDL_SLOT_FIELDS; field++)
-    state_set_float(slots, field, wave->slots, i,
-                    field == CDL_SLOT_DEPTH ? CDL_INFINITY : 0.0f);
+  CDL_FOR_EACH_ITEM(i) {
+    for (uint field = CDL_SLOT_ALBEDO; field < CDL_SLOT_FIELDS; field++)
+      state_set_float(slots, field, wave->slots, i, field == CDL_SLOT_DEPTH ? CDL_INFINITY : 0.0f);
+  }
 }

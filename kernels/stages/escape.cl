@@ -1,5 +1,5 @@
 /* escape: paths that hit nothing see the environment. */
-#include "lib/portable.h"
+#include "lib/stage.h"
 
 #include "lib/state.h"
 #include "light/environment.h"
@@ -8,14 +8,15 @@ __kernel void escape(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wav
                      CDL_GLOBAL const float *environment,
                      CDL_GLOBAL const cdl_AliasEntry *environment_cells,
                      CDL_GLOBAL const uint *path, CDL_GLOBAL uint *slots) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
-  vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-  float pdf = state_float(path, CDL_PATH_PDF, stride, i);
-  uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);
-  vec3 radiance = environment_radiance(&params->environment, environment, direction);
-  float light_pdf = environment_pdf(&params->environment, environment_cells, direction);
-  float weight = pdf > 0.0f ? mis_power(pdf, light_pdf) : 1.0f;
-  state_add_radiance(slots, wave->slots, slot, v3_scale(v3_mul(throughput, radiance), weight));
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+    vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
+    float pdf = state_float(path, CDL_PATH_PDF, stride, i);
+    uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);
+    vec3 radiance = environment_radiance(&params->environment, environment, direction);
+    float light_pdf = environment_pdf(&params->environment, environment_cells, direction);
+    float weight = pdf > 0.0f ? mis_power(pdf, light_pdf) : 1.0f;
+    state_add_radiance(slots, wave->slots, slot, v3_scale(v3_mul(throughput, radiance), weight));
+  }
 }

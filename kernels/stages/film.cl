@@ -1,8 +1,8 @@
 /* film: adds up the samples of each pixel, block by block, in the order of the samples.
  *
  * One work-item a pixel, block and channel. sums[(block * channels + channel) * pixels + pixel]; a
- * channel is a SLOT field, added as a float or, for ids, the first sample's taken as it is. A sample
- * that is not finite counts as black, and is counted. */
+ * channel is a SLOT field, added as a float or, for ids, the first sample's taken as it is. A
+ * sample that is not finite counts as black, and is counted. */
 #include "lib/portable.h"
 
 #include "abi/film.h"
@@ -12,7 +12,8 @@
 CDL_INLINE int is_finite(uint bits) { return (bits & 0x7f800000u) != 0x7f800000u; }
 
 __kernel void film(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_FilmChannel *film_channels,
-                   CDL_GLOBAL const uint *slots, CDL_GLOBAL uint *sums, CDL_GLOBAL uint *bad_samples) {
+                   CDL_GLOBAL const uint *slots, CDL_GLOBAL uint *sums,
+                   CDL_GLOBAL uint *bad_samples) {
   uint pixels = wave->width * wave->height;
   uint channels = wave->channels;
   uint blocks = (wave->sample_count + CDL_BLOCK_SAMPLES - 1u) / CDL_BLOCK_SAMPLES;

@@ -47,5 +47,6 @@ __kernel void first_hit(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *
   state_set_vec3(slots, CDL_SLOT_AOV_EMISSION, wave->slots, slot,
                  v3_select(lit, emission, v3_all(0.0f)));
   state_set_float(slots, CDL_SLOT_OBJECT, wave->slots, slot, (float)(int)(object + 1u));
-  state_set_float(slots, CDL_SLOT_MATERIAL_ID, wave->slots, slot, (float)(int)(shape->material + 1u));
+  state_set_float(slots, CDL_SLOT_MATERIAL_ID, wave->slots, slot,
+                  (float)(int)(shape->material + 1u));
 }

@@ -20,21 +20,19 @@ CDL_INLINE uint hit_queue(Hit hit, int ends, CDL_GLOBAL const cdl_Triangle *tria
   return CDL_QUEUE_MODELS + 2u * material->model + emissive;
 }
 
-__kernel void intersect(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                        CDL_GLOBAL const BvhNode *bvh_nodes,
-                        CDL_GLOBAL const BvhTriangle *bvh_triangles,
-                        CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
-                        CDL_GLOBAL const cdl_Triangle *triangles,
-                        CDL_GLOBAL const cdl_Shape *shapes,
-                        CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
-                        CDL_GLOBAL uint *work) {
+__kernel void
+intersect(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+          CDL_GLOBAL const BvhNode *bvh_nodes, CDL_GLOBAL const BvhTriangle *bvh_triangles,
+          CDL_GLOBAL const cdl_BvhInstance *bvh_instances, CDL_GLOBAL const cdl_Triangle *triangles,
+          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const cdl_Material *materials,
+          CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
   size_t i = get_global_id(0);
   size_t stride = wave->stride;
   if (state_uint(work, CDL_WORK_QUEUE, stride, i) == CDL_QUEUE_DEAD) return;
   vec3 origin = state_vec3(path, CDL_PATH_ORIGIN, stride, i);
   vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
-  Hit hit = bvh_closest(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin, direction,
-                        CDL_INFINITY, CDL_MASK_ALL);
+  Hit hit = bvh_closest(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
+                        direction, CDL_INFINITY, CDL_MASK_ALL);
   int found = hit_is_some(hit);
   state_set_float(path, CDL_PATH_HIT_T, stride, i, found ? hit.t : CDL_INFINITY);
   state_set_float(path, CDL_PATH_HIT_U, stride, i, hit.u);

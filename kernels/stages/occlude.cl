@@ -1,5 +1,5 @@
-/* occlude: shadow rays. What the light adds arrives if nothing opaque is in between, weakened by media,
- * holes and half transparent surfaces on the way. */
+/* occlude: shadow rays. What the light adds arrives if nothing opaque is in between, weakened by
+ * media, holes and half transparent surfaces on the way. */
 #include "lib/portable.h"
 
 #include "abi/params.h"
@@ -21,9 +21,8 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wa
                       CDL_GLOBAL const BvhNode *bvh_nodes,
                       CDL_GLOBAL const BvhTriangle *bvh_triangles,
                       CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
-                      CDL_GLOBAL const cdl_Triangle *triangles,
-                      CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
-                      CDL_GLOBAL const cdl_Material *materials,
+                      CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
+                      CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                       CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
                       CDL_GLOBAL const float *srgb, CDL_GLOBAL const cdl_Medium *media,
                       CDL_GLOBAL const uint *path, CDL_GLOBAL const uint *work,
@@ -64,8 +63,8 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wa
     CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
     CDL_GLOBAL const cdl_Material *material = materials + shape->material;
     /* A ray through an edge meets both triangles, but crosses the surface once. */
-    int repeated = hit_is_some(last) && hit.t == last.t &&
-                   triangle->shape == triangles[last.primitive].shape;
+    int repeated =
+        hit_is_some(last) && hit.t == last.t && triangle->shape == triangles[last.primitive].shape;
     if (material->model != CDL_MODEL_INTERFACE) {
       TextureCoords uv = shape_texture_coords(shape, attributes, triangle, hit.u, hit.v);
       Texel base = material_base(material, shape, attributes, triangle, hit.u, hit.v, uv, textures,

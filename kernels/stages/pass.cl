@@ -1,5 +1,5 @@
 /* pass: paths that go straight on: through the boundary of a medium, or through a hole. */
-#include "lib/portable.h"
+#include "lib/stage.h"
 
 #include "abi/params.h"
 #include "lib/sampling.h"
@@ -9,28 +9,29 @@
 __kernel void pass(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
                    CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
                    CDL_GLOBAL uint *work) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
-  uint material = state_uint(work, CDL_WORK_MATERIAL, stride, i);
-  vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-  vec3 normal = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
-  vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-  float travelled = state_float(path, CDL_PATH_TRAVELLED, stride, i) +
-                    state_float(path, CDL_PATH_HIT_T, stride, i);
-  uint counts = counts_passed(state_uint(path, CDL_PATH_COUNTS, stride, i));
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
+    uint material = state_uint(work, CDL_WORK_MATERIAL, stride, i);
+    vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
+    vec3 normal = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
+    vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
+    float travelled = state_float(path, CDL_PATH_TRAVELLED, stride, i) +
+                      state_float(path, CDL_PATH_HIT_T, stride, i);
+    uint counts = counts_passed(state_uint(path, CDL_PATH_COUNTS, stride, i));
 
-  MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
-                                 state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-  MediaStack crossed =
-      media_crossed(before, materials[material].medium, (vertex & CDL_VERTEX_FRONT) != 0u);
-  int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
-  int alive = v3_max(throughput) > 0.0f && (counts_vertex(counts) < params->pass_limit);
+    MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
+                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
+    MediaStack crossed =
+        media_crossed(before, materials[material].medium, (vertex & CDL_VERTEX_FRONT) != 0u);
+    int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
+    int alive = v3_max(throughput) > 0.0f && (counts_vertex(counts) < params->pass_limit);
 
-  state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, v3_neg(normal)));
-  state_set_float(path, CDL_PATH_TRAVELLED, stride, i, travelled);
-  state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts);
-  state_set_uint(path, CDL_PATH_MEDIA, stride, i, boundary ? crossed.inner : before.inner);
-  state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, boundary ? crossed.outer : before.outer);
-  state_set_uint(work, CDL_WORK_QUEUE, stride, i, alive ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+    state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, v3_neg(normal)));
+    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, travelled);
+    state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts);
+    state_set_uint(path, CDL_PATH_MEDIA, stride, i, boundary ? crossed.inner : before.inner);
+    state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, boundary ? crossed.outer : before.outer);
+    state_set_uint(work, CDL_WORK_QUEUE, stride, i, alive ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+  }
 }

@@ -1,5 +1,6 @@
-/* queue_count: counts, chunk by chunk, how many paths go to each queue, and how many shadow rays were
- * traced before. counts[queue * chunks + chunk]; one work-item a chunk of CDL_QUEUE_CHUNK paths. */
+/* queue_count: counts, chunk by chunk, how many paths go to each queue, and how many shadow rays
+ * were traced before. counts[queue * chunks + chunk]; one work-item a chunk of CDL_QUEUE_CHUNK
+ * paths. */
 #include "lib/portable.h"
 
 #include "abi/params.h"

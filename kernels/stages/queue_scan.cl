@@ -23,6 +23,7 @@ __kernel void queue_scan(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL uint *counts,
       sources[place] = CDL_SOURCE_PAD | (wave->path_count + q * CDL_QUEUE_ALIGNMENT + pad);
   }
   uint shadows = 0u;
-  for (uint chunk = 0; chunk < chunks; chunk++) shadows += counts[CDL_QUEUE_SHADOWS * chunks + chunk];
+  for (uint chunk = 0; chunk < chunks; chunk++)
+    shadows += counts[CDL_QUEUE_SHADOWS * chunks + chunk];
   ranges[CDL_QUEUE_SHADOWS].count = shadows;
 }

@@ -1,4 +1,5 @@
-/* queue_scatter: tells each place in the queues which path comes there, in the order of the paths. */
+/* queue_scatter: tells each place in the queues which path comes there, in the order of the paths.
+ */
 #include "lib/portable.h"
 
 #include "abi/params.h"

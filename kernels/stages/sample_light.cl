@@ -1,5 +1,5 @@
 /* sample_light: chooses a point on a light for every vertex that scatters light. */
-#include "lib/portable.h"
+#include "lib/stage.h"
 
 #include "lib/dimensions.h"
 #include "lib/material.h"
@@ -17,67 +17,65 @@ CDL_INLINE vec3 triangle_radiance(CDL_GLOBAL const cdl_Light *light, float b1, f
   int is_triangle = light->type == CDL_LIGHT_TRIANGLE;
   CDL_GLOBAL const cdl_Triangle *triangle = triangles + (is_triangle ? light->triangle : 0u);
   CDL_GLOBAL const cdl_Material *material = materials + (is_triangle ? light->material : 0u);
-  TextureCoords uv =
-      shape_texture_coords(shapes + triangle->shape, attributes, triangle, b1, b2);
+  TextureCoords uv = shape_texture_coords(shapes + triangle->shape, attributes, triangle, b1, b2);
   return material_emission(material, uv, textures, texels, srgb);
 #else
   return light_vec3(light->radiance);
 #endif
 }
 
-__kernel void sample_light(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                           CDL_GLOBAL const cdl_Light *lights,
-                           CDL_GLOBAL const cdl_AliasEntry *light_table,
-                           CDL_GLOBAL const float *environment,
-                           CDL_GLOBAL const cdl_AliasEntry *environment_cells,
-                           CDL_GLOBAL const cdl_Triangle *triangles,
-                           CDL_GLOBAL const cdl_Shape *shapes,
-                           CDL_GLOBAL const float *attributes,
-                           CDL_GLOBAL const cdl_Material *materials,
-                           CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
-                           CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path,
-                           CDL_GLOBAL uint *work) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-  PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
-  uint vertex = counts_vertex(state_uint(path, CDL_PATH_COUNTS, stride, i));
-  float choice, unused, u, v;
-  vertex_random(random, vertex, CDL_PAIR_SELECT, &choice, &unused);
-  vertex_random(random, vertex, CDL_PAIR_LIGHT, &u, &v);
+__kernel void
+sample_light(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+             CDL_GLOBAL const cdl_Light *lights, CDL_GLOBAL const cdl_AliasEntry *light_table,
+             CDL_GLOBAL const float *environment,
+             CDL_GLOBAL const cdl_AliasEntry *environment_cells,
+             CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
+             CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
+             CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
+             CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path, CDL_GLOBAL uint *work) {
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
+    PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+    uint vertex = counts_vertex(state_uint(path, CDL_PATH_COUNTS, stride, i));
+    float choice, unused, u, v;
+    vertex_random(random, vertex, CDL_PAIR_SELECT, &choice, &unused);
+    vertex_random(random, vertex, CDL_PAIR_LIGHT, &u, &v);
 
-  /* Alias method; the fraction left of `choice` decides between slot and alias. */
-  float scaled = choice * (float)(int)params->light_count;
-  uint slot = (uint)(int)scaled;
-  slot = slot < params->light_count ? slot : params->light_count - 1u;
-  float fraction = scaled - (float)(int)slot;
-  uint chosen = fraction < light_table[slot].keep ? slot : light_table[slot].alias;
-  CDL_GLOBAL const cdl_Light *light = lights + chosen;
-  uint type = light->type;
+    /* Alias method; the fraction left of `choice` decides between slot and alias. */
+    float scaled = choice * (float)(int)params->light_count;
+    uint slot = (uint)(int)scaled;
+    slot = slot < params->light_count ? slot : params->light_count - 1u;
+    float fraction = scaled - (float)(int)slot;
+    uint chosen = fraction < light_table[slot].keep ? slot : light_table[slot].alias;
+    CDL_GLOBAL const cdl_Light *light = lights + chosen;
+    uint type = light->type;
 
-  LightSample sample =
-      light_sample_make(v3(0.0f, 0.0f, 1.0f), CDL_INFINITY, v3_all(0.0f), 0.0f);
+    LightSample sample = light_sample_make(v3(0.0f, 0.0f, 1.0f), CDL_INFINITY, v3_all(0.0f), 0.0f);
 #ifdef CDL_TRIANGLE_LIGHTS
-  float b1, b2;
-  sample_triangle(u, v, &b1, &b2);
-  vec3 radiance = triangle_radiance(light, b1, b2, triangles, shapes, attributes, materials, textures,
-                                    texels, srgb);
-  LightSample on_triangle = light_triangle_sample(light, position, b1, b2, radiance);
-  sample = light_sample_select(type == CDL_LIGHT_TRIANGLE, on_triangle, sample);
+    float b1, b2;
+    sample_triangle(u, v, &b1, &b2);
+    vec3 radiance = triangle_radiance(light, b1, b2, triangles, shapes, attributes, materials,
+                                      textures, texels, srgb);
+    LightSample on_triangle = light_triangle_sample(light, position, b1, b2, radiance);
+    sample = light_sample_select(type == CDL_LIGHT_TRIANGLE, on_triangle, sample);
 #endif
 #ifdef CDL_PUNCTUAL_LIGHTS
-  sample = light_sample_select(type == CDL_LIGHT_POINT, light_point_sample(light, position), sample);
-  sample = light_sample_select(type == CDL_LIGHT_DIRECTIONAL, light_directional_sample(light), sample);
+    sample =
+        light_sample_select(type == CDL_LIGHT_POINT, light_point_sample(light, position), sample);
+    sample =
+        light_sample_select(type == CDL_LIGHT_DIRECTIONAL, light_directional_sample(light), sample);
 #endif
 #ifdef CDL_ENVIRONMENT_LIGHT
-  float s, t;
-  vertex_random(random, vertex, CDL_PAIR_TEXEL, &s, &t);
-  LightSample sky =
-      environment_sample(&params->environment, environment, environment_cells, u, v, s, t);
-  sample = light_sample_select(type == CDL_LIGHT_ENVIRONMENT, sky, sample);
+    float s, t;
+    vertex_random(random, vertex, CDL_PAIR_TEXEL, &s, &t);
+    LightSample sky =
+        environment_sample(&params->environment, environment, environment_cells, u, v, s, t);
+    sample = light_sample_select(type == CDL_LIGHT_ENVIRONMENT, sky, sample);
 #endif
-  state_set_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i, sample.direction);
-  state_set_float(work, CDL_WORK_LIGHT_DISTANCE, stride, i, sample.distance);
-  state_set_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i, sample.weight);
-  state_set_float(work, CDL_WORK_LIGHT_PDF, stride, i, sample.pdf);
+    state_set_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i, sample.direction);
+    state_set_float(work, CDL_WORK_LIGHT_DISTANCE, stride, i, sample.distance);
+    state_set_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i, sample.weight);
+    state_set_float(work, CDL_WORK_LIGHT_PDF, stride, i, sample.pdf);
+  }
 }

@@ -1,5 +1,5 @@
 /* shade_medium: light that a medium scatters, by its phase function. */
-#include "lib/portable.h"
+#include "lib/stage.h"
 
 #include "lib/dimensions.h"
 #include "lib/roulette.h"
@@ -11,43 +11,44 @@
 __kernel void shade_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
                            CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
                            CDL_GLOBAL uint *work) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
-                                state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-  float g = media[media_current(stack, params->scene_medium)].g;
-  vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-  vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
-  vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-  uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
-  int scatters = counts_depth(counts) < params->max_depth;
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
+                                  state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
+    float g = media[media_current(stack, params->scene_medium)].g;
+    vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
+    vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+    vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
+    uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
+    int scatters = counts_depth(counts) < params->max_depth;
 
 #ifdef CDL_LIGHTS
-  vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
-  float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-  float phase = phase_hg(v3_dot(direction, to_light), g);
-  float mis = light_pdf > 0.0f ? mis_power(light_pdf, phase) : 1.0f;
-  vec3 direct = v3_mul(throughput, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
-  direct = v3_scale(direct, scatters ? phase * mis : 0.0f);
-  state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, position);
-  state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
-  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
+    vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
+    float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
+    float phase = phase_hg(v3_dot(direction, to_light), g);
+    float mis = light_pdf > 0.0f ? mis_power(light_pdf, phase) : 1.0f;
+    vec3 direct = v3_mul(throughput, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
+    direct = v3_scale(direct, scatters ? phase * mis : 0.0f);
+    state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, position);
+    state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
+    state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
 #endif
 
-  PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
-  float u, v, unused, chance;
-  vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
-  vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &unused, &chance);
-  PhaseSample sample = phase_hg_sample(direction, g, u, v);
-  vec3 next = roulette(params, counts_depth(counts) + 1u, throughput, chance);
-  next = v3_select(scatters, next, v3_all(0.0f));
+    PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+    float u, v, unused, chance;
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &unused, &chance);
+    PhaseSample sample = phase_hg_sample(direction, g, u, v);
+    vec3 next = roulette(params, counts_depth(counts) + 1u, throughput, chance);
+    next = v3_select(scatters, next, v3_all(0.0f));
 
-  state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, position);
-  state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, sample.wi);
-  state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
-  state_set_float(path, CDL_PATH_PDF, stride, i, sample.pdf);
-  state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
-  state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
-  state_set_uint(work, CDL_WORK_QUEUE, stride, i,
-                 v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+    state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, position);
+    state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, sample.wi);
+    state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
+    state_set_float(path, CDL_PATH_PDF, stride, i, sample.pdf);
+    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
+    state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
+    state_set_uint(work, CDL_WORK_QUEUE, stride, i,
+                   v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+  }
 }

@@ -1,6 +1,7 @@
-/* shade_surface: light that a surface scatters. Built once for each model, -DCDL_SHADE_MODEL=…, and run
- * on that model's queue: weighs the sampled light, then samples the direction in which to go on. */
-#include "lib/portable.h"
+/* shade_surface: light that a surface scatters. Built once for each model, -DCDL_SHADE_MODEL=…, and
+ * run on that model's queue: weighs the sampled light, then samples the direction in which to go
+ * on. */
+#include "lib/stage.h"
 
 #include "bsdf/model.h"
 #include "lib/dimensions.h"
@@ -29,59 +30,65 @@ CDL_INLINE BsdfParams load_params(CDL_GLOBAL const uint *work, size_t stride, si
 __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
                               CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
                               CDL_GLOBAL uint *work) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  CDL_GLOBAL const cdl_Material *material =
-      materials + state_uint(work, CDL_WORK_MATERIAL, stride, i);
-  BsdfParams p = load_params(work, stride, i, material);
-  vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-  vec3 geometric = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
-  Frame shading = frame_orthonormal(state_vec3(work, CDL_WORK_NORMAL, stride, i),
-                                    state_vec3(work, CDL_WORK_TANGENT, stride, i));
-  vec3 wo = frame_to_local(shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
-  vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-  uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
-  int scatters = counts_depth(counts) < params->max_depth;
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    CDL_GLOBAL const cdl_Material *material =
+        materials + state_uint(work, CDL_WORK_MATERIAL, stride, i);
+    BsdfParams p = load_params(work, stride, i, material);
+    vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
+    vec3 geometric = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
+    Frame shading = frame_orthonormal(state_vec3(work, CDL_WORK_NORMAL, stride, i),
+                                      state_vec3(work, CDL_WORK_TANGENT, stride, i));
+    vec3 wo = frame_to_local(shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
+    vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
+    uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
+    int scatters = counts_depth(counts) < params->max_depth;
 
 #if CDL_SHADE_LIT && defined(CDL_LIGHTS)
-  vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
-  float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-  BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(shading, to_light));
-  int lit = scatters & (v3_dot(to_light, geometric) > 0.0f);
-  float mis = light_pdf > 0.0f ? mis_power(light_pdf, value.pdf) : 1.0f;
-  vec3 direct = v3_mul(value.f_cos, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
-  direct = v3_scale(v3_mul(throughput, direct), lit ? mis : 0.0f);
-  state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, offset_ray(position, geometric));
-  state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
-  state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
+    vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
+    float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
+    BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(shading, to_light));
+    int lit = scatters & (v3_dot(to_light, geometric) > 0.0f);
+    float mis = light_pdf > 0.0f ? mis_power(light_pdf, value.pdf) : 1.0f;
+    vec3 direct = v3_mul(value.f_cos, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
+    direct = v3_scale(v3_mul(throughput, direct), lit ? mis : 0.0f);
+    state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, offset_ray(position, geometric));
+    state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
+    state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
 #endif
 
-  PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
-  float u, v, lobe, chance;
-  vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
-  vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
-  BsdfSample sample = bsdf_sample_model(p, wo, u, v, lobe);
-  vec3 wi = frame_to_world(shading, sample.wi);
-  float side = v3_dot(wi, geometric);
-  int right_side = sample.transmitted ? side < 0.0f : side > 0.0f;
-  vec3 next = roulette(params, counts_depth(counts) + 1u, v3_mul(throughput, sample.weight), chance);
-  next = v3_select(scatters & right_side, next, v3_all(0.0f));
-  vec3 leaving = v3_select(sample.transmitted, v3_neg(geometric), geometric);
+    PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+    float u, v, lobe, chance;
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
+#if CDL_SHADE_LIT && defined(CDL_LIGHTS)
+    u = math_after(value.pdf, u); /* evaluated once for the light, once for the sample */
+    v = math_after(value.pdf, v);
+#endif
+    BsdfSample sample = bsdf_sample_model(p, wo, u, v, lobe);
+    vec3 wi = frame_to_world(shading, sample.wi);
+    float side = v3_dot(wi, geometric);
+    int right_side = sample.transmitted ? side < 0.0f : side > 0.0f;
+    vec3 next =
+        roulette(params, counts_depth(counts) + 1u, v3_mul(throughput, sample.weight), chance);
+    next = v3_select(scatters & right_side, next, v3_all(0.0f));
+    vec3 leaving = v3_select(sample.transmitted, v3_neg(geometric), geometric);
 
-  state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, leaving));
-  state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, wi);
-  state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
-  state_set_float(path, CDL_PATH_PDF, stride, i, sample.delta ? 0.0f : sample.pdf);
-  state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
-  state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
+    state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, leaving));
+    state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, wi);
+    state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
+    state_set_float(path, CDL_PATH_PDF, stride, i, sample.delta ? 0.0f : sample.pdf);
+    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
+    state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
 #if CDL_SHADE_TRANSMITS
-  MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
-                                 state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-  MediaStack crossed = media_crossed(before, material->medium, p.front);
-  int through = sample.transmitted;
-  state_set_uint(path, CDL_PATH_MEDIA, stride, i, through ? crossed.inner : before.inner);
-  state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, through ? crossed.outer : before.outer);
+    MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
+                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
+    MediaStack crossed = media_crossed(before, material->medium, p.front);
+    int through = sample.transmitted;
+    state_set_uint(path, CDL_PATH_MEDIA, stride, i, through ? crossed.inner : before.inner);
+    state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, through ? crossed.outer : before.outer);
 #endif
-  state_set_uint(work, CDL_WORK_QUEUE, stride, i,
-                 v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+    state_set_uint(work, CDL_WORK_QUEUE, stride, i,
+                   v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+  }
 }

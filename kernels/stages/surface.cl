@@ -1,5 +1,6 @@
-/* surface: geometry and textured parameters of every surface that was hit, for the kernels after it. */
-#include "lib/portable.h"
+/* surface: geometry and textured parameters of every surface that was hit, for the kernels after
+ * it. */
+#include "lib/stage.h"
 
 #include "abi/params.h"
 #include "lib/material.h"
@@ -11,65 +12,68 @@ CDL_INLINE vec3 mapped_normal(SurfacePoint point, CDL_GLOBAL const cdl_Material 
                               TextureCoords uv, CDL_TEXTURE_ARGS) {
   Texel texel = texture_lookup(&material->normal_texture, textures, texels, srgb, uv, 0);
   float x = fma(2.0f, texel.r, -1.0f) * material->normal_scale;
-  float y = fma(2.0f, texel.g, -1.0f) * material->normal_scale * point.handedness;
-  float z = fma(2.0f, texel.b, -1.0f);
+  float green = math_after(x, texel.g);
+  float y = fma(2.0f, green, -1.0f) * material->normal_scale * point.handedness;
+  float z = fma(2.0f, math_after(y, texel.b), -1.0f);
   vec3 bent = frame_to_world(frame_from_tangent(point.normal, point.tangent), v3(x, y, z));
   int present = (material->normal_texture.texture != CDL_NONE) & (v3_length2(bent) > 1e-12f);
   return v3_select(present, v3_normalize(bent), point.normal);
 }
 
-__kernel void surface(CDL_CONSTANT cdl_Wave *wave,
-                      CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
-                      CDL_GLOBAL const cdl_Triangle *triangles,
-                      CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
-                      CDL_GLOBAL const cdl_Material *materials,
+__kernel void surface(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
+                      CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
+                      CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                       CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
                       CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path,
                       CDL_GLOBAL uint *work) {
-  size_t i = get_global_id(0);
-  size_t stride = wave->stride;
-  uint triangle_index = state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i);
-  uint instance_index = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
-  float u = state_float(path, CDL_PATH_HIT_U, stride, i);
-  float v = state_float(path, CDL_PATH_HIT_V, stride, i);
-  vec3 wo = v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i));
+  CDL_FOR_EACH_ITEM(i) {
+    size_t stride = wave->stride;
+    uint triangle_index = state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i);
+    uint instance_index = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
+    float u = state_float(path, CDL_PATH_HIT_U, stride, i);
+    float v = state_float(path, CDL_PATH_HIT_V, stride, i);
+    vec3 wo = v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i));
 
-  CDL_GLOBAL const cdl_Triangle *triangle = triangles + triangle_index;
-  CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
-  uint material_index = shape->material;
-  CDL_GLOBAL const cdl_Material *material = materials + material_index;
-  SurfacePoint point =
-      surface_point(bvh_instances + instance_index, shape, attributes, triangle, u, v);
+    CDL_GLOBAL const cdl_Triangle *triangle = triangles + triangle_index;
+    CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
+    uint material_index = shape->material;
+    CDL_GLOBAL const cdl_Material *material = materials + material_index;
+    SurfacePoint point =
+        surface_point(bvh_instances + instance_index, shape, attributes, triangle, u, v);
 
-  float roughness = 1.0f;
-  float metallic = 1.0f;
-  vec3 normal = point.normal;
-  TextureCoords uv;
+    float roughness = 1.0f;
+    float metallic = 1.0f;
+    vec3 normal = point.normal;
+    TextureCoords uv;
 #ifdef CDL_TEXTURES
-  uv = shape_texture_coords(shape, attributes, triangle, u, v);
-  normal = mapped_normal(point, material, uv, textures, texels, srgb);
+    uv = shape_texture_coords(shape, attributes, triangle, u, v);
+    normal = mapped_normal(point, material, uv, textures, texels, srgb);
+    uv = texture_coords_after(normal.x, uv);
   Texel param = texture_lookup(&material->param_texture, textures, texels, srgb, uv, 0);
-  int is_gltf = material->model == CDL_MODEL_GLTF;
-  roughness = is_gltf ? param.g : param.r;
-  metallic = param.b;
+    int is_gltf = material->model == CDL_MODEL_GLTF;
+    roughness = is_gltf ? param.g : param.r;
+    metallic = param.b;
+  uv = texture_coords_after(metallic, uv);
 #else
-  uv.u0 = uv.v0 = uv.u1 = uv.v1 = uv.pad = 0.0f;
+    uv.u0 = uv.v0 = uv.u1 = uv.v1 = uv.pad = 0.0f;
 #endif
-  Texel base = material_base(material, shape, attributes, triangle, u, v, uv, textures, texels, srgb);
+    Texel base =
+        material_base(material, shape, attributes, triangle, u, v, uv, textures, texels, srgb);
 
-  int front = v3_dot(point.geometric, wo) >= 0.0f;
-  vec3 geometric = v3_select(front, point.geometric, v3_neg(point.geometric));
-  normal = surface_face_path(v3_select(front, normal, v3_neg(normal)), wo);
-  uint vertex = front ? CDL_VERTEX_FRONT : 0u;
-  vertex |= material->model == CDL_MODEL_INTERFACE ? CDL_VERTEX_INTERFACE : 0u;
+    int front = v3_dot(point.geometric, wo) >= 0.0f;
+    vec3 geometric = v3_select(front, point.geometric, v3_neg(point.geometric));
+    normal = surface_face_path(v3_select(front, normal, v3_neg(normal)), wo);
+    uint vertex = front ? CDL_VERTEX_FRONT : 0u;
+    vertex |= material->model == CDL_MODEL_INTERFACE ? CDL_VERTEX_INTERFACE : 0u;
 
-  state_set_vec3(work, CDL_WORK_POSITION, stride, i, point.position);
-  state_set_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i, geometric);
-  state_set_vec3(work, CDL_WORK_NORMAL, stride, i, normal);
-  state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
-  state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
-  state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
-  state_set_float(work, CDL_WORK_ROUGHNESS, stride, i, roughness);
-  state_set_float(work, CDL_WORK_METALLIC, stride, i, metallic);
-  state_set_uint(work, CDL_WORK_VERTEX, stride, i, vertex);
+    state_set_vec3(work, CDL_WORK_POSITION, stride, i, point.position);
+    state_set_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i, geometric);
+    state_set_vec3(work, CDL_WORK_NORMAL, stride, i, normal);
+    state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
+    state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
+    state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
+    state_set_float(work, CDL_WORK_ROUGHNESS, stride, i, roughness);
+    state_set_float(work, CDL_WORK_METALLIC, stride, i, metallic);
+    state_set_uint(work, CDL_WORK_VERTEX, stride, i, vertex);
+  }
 }
