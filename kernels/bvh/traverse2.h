@@ -39,9 +39,10 @@ CDL_INLINE BvhRay bvh_ray_in_world(CDL_GLOBAL const BvhNode *root, vec3 o, vec3 
                  BVH_PAD_INSTANCES);
 }
 
-/* Where the ray enters each child, x and y, and which it does enter before `limit`: bits 0 and 1.
- */
-CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit, float2 *enters) {
+/* Where the ray enters each child, x and y; and where it leaves them, cut to `limit`: it meets
+ * those that it enters before it leaves. */
+CDL_INLINE void bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit, float2 *enter,
+                          float2 *leave) {
   CDL_GLOBAL const float *planes = node->bounds;
   float2 ix = lanes2_all(r.inverse_x), iy = lanes2_all(r.inverse_y), iz = lanes2_all(r.inverse_z);
   float2 near_x = lanes2_fma(lanes2_load(planes + 2u * r.sign_x), ix, lanes2_all(r.near_x));
@@ -50,10 +51,8 @@ CDL_INLINE uint bvh_boxes(BvhRay r, CDL_GLOBAL const BvhNode *node, float limit,
   float2 far_x = lanes2_fma(lanes2_load(planes + (6u - 2u * r.sign_x)), ix, lanes2_all(r.far_x));
   float2 far_y = lanes2_fma(lanes2_load(planes + (10u - 2u * r.sign_y)), iy, lanes2_all(r.far_y));
   float2 far_z = lanes2_fma(lanes2_load(planes + (14u - 2u * r.sign_z)), iz, lanes2_all(r.far_z));
-  float2 enter = lanes2_max(lanes2_max(near_x, lanes2_all(0.0f)), lanes2_max(near_y, near_z));
-  float2 leave = lanes2_min(lanes2_min(far_x, lanes2_all(limit)), lanes2_min(far_y, far_z));
-  *enters = enter;
-  return (enter.x <= leave.x ? 1u : 0u) | (enter.y <= leave.y ? 2u : 0u);
+  *enter = lanes2_max(lanes2_max(near_x, lanes2_all(0.0f)), lanes2_max(near_y, near_z));
+  *leave = lanes2_min(lanes2_min(far_x, lanes2_all(limit)), lanes2_min(far_y, far_z));
 }
 
 /* References that wait, and where the ray enters them. */
@@ -70,26 +69,28 @@ CDL_INLINE void bvh_put(BvhStack *stack, uint top, uint child, float enter) {
 CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                           int any, BvhStack *stack, uint *top) {
   CDL_GLOBAL const BvhNode *node = nodes + at;
-  float2 enters;
-  uint hits = bvh_boxes(ray, node, limit, &enters);
+  float2 enter, leave;
+  bvh_boxes(ray, node, limit, &enter, &leave);
   (void)any;
-  if (hits == 0u) return CDL_NONE;
-  if (hits != 3u) return node->child[hits - 1u];
-  uint later = enters.y < enters.x ? 0u : 1u;
-  LANES_PREFETCH(nodes + (node->child[later] & CDL_BVH_INDEX));
-  bvh_put(stack, (*top)++, node->child[later], bvh_max(enters.x, enters.y));
-  return node->child[1u - later];
+  if (enter.x <= leave.x && enter.y <= leave.y) {
+    uint later = enter.y < enter.x ? 0u : 1u;
+    LANES_PREFETCH(nodes + (node->child[later] & CDL_BVH_INDEX));
+    bvh_put(stack, (*top)++, node->child[later], bvh_max(enter.x, enter.y));
+    return node->child[1u - later];
+  }
+  if (enter.x <= leave.x) return node->child[0];
+  return enter.y <= leave.y ? node->child[1] : CDL_NONE;
 }
 
 CDL_INLINE uint bvh_enter_all(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, float limit,
                               BvhStack *stack, uint top) {
-  float2 enters;
-  uint hits = bvh_boxes(ray, nodes + at, limit, &enters);
-  uint later = enters.y < enters.x ? 0u : 1u;
-  if ((hits >> later & 1u) != 0u)
-    bvh_put(stack, top++, nodes[at].child[later], later == 0u ? enters.x : enters.y);
-  if ((hits >> (1u - later) & 1u) != 0u)
-    bvh_put(stack, top++, nodes[at].child[1u - later], later == 0u ? enters.y : enters.x);
+  CDL_GLOBAL const BvhNode *node = nodes + at;
+  float2 enter, leave;
+  bvh_boxes(ray, node, limit, &enter, &leave);
+  int swap = enter.y < enter.x;
+  if (swap && enter.x <= leave.x) bvh_put(stack, top++, node->child[0], enter.x);
+  if (enter.y <= leave.y) bvh_put(stack, top++, node->child[1], enter.y);
+  if (!swap && enter.x <= leave.x) bvh_put(stack, top++, node->child[0], enter.x);
   return top;
 }
 

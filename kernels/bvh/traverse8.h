@@ -193,8 +193,8 @@ CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, 
     }
     return node->child[a];
   }
-  if ((others & (others - 1u)) == 0u) {
-    uint b = mask_lowest(others);
+  uint b = mask_lowest(others);
+  if (others == 1u << b) {
     uint later = enters[b] < enters[a] ? a : b;
     bvh_prefetch(nodes, node->child[a]);
     bvh_prefetch(nodes, node->child[b]);
