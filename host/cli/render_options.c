@@ -65,7 +65,7 @@ static const struct argp_option option_list[] = {
     {"device", KEY_DEVICE, "SELECTOR", 0,
      "Index from candela devices, or part of a platform's or device's name", 4},
     {"schedule", KEY_SCHEDULE, "NAME", 0, "auto or wavefront", 4},
-    {"bvh", KEY_BVH, "WIDTH", 0, "auto or 2", 4},
+    {"bvh", KEY_BVH, "WIDTH", 0, "auto, 2 or 8", 4},
     {"math", KEY_MATH, "NAME", 0, "exact: the same bits on every device", 4},
     {"checkpoint", KEY_CHECKPOINT, "FILE", 0, "Keep the unfinished render in this file", 5},
     {"checkpoint-every", KEY_CHECKPOINT_EVERY, "SECONDS", 0,

@@ -47,7 +47,7 @@ static const char *directive(const char *line, char word[16], const char **rest)
   if (*line++ != '#') return NULL;
   while (*line == ' ' || *line == '\t') line++;
   size_t n = 0;
-  while (isalpha((unsigned char)line[n]) && n < 15) n++;
+  while (n < 15 && isalpha((unsigned char)line[n])) n++;
   memcpy(word, line, n);
   word[n] = 0;
   line += n;

@@ -149,8 +149,8 @@ cdl_Status cdl_settings_check(const cdl_Log *log, const cdl_Settings *s) {
   if (status) return status;
   if (s->schedule == CDL_SCHEDULE_FUSED)
     return log_fail(log, CDL_USAGE, "--schedule: this version has auto and wavefront, not fused");
-  if (s->bvh_width && s->bvh_width != 2)
-    return log_fail(log, CDL_USAGE, "--bvh: this version has auto and 2, not %u", s->bvh_width);
+  if (s->bvh_width && s->bvh_width != 2 && s->bvh_width != 8)
+    return log_fail(log, CDL_USAGE, "--bvh %u: there are auto, 2 and 8", s->bvh_width);
   if (s->fast_math) return log_fail(log, CDL_USAGE, "--math: this version has exact, not fast");
   if (s->max_depth > MAX_DEPTH)
     return log_fail(log, CDL_USAGE, "--max-depth: %u is more than %d", s->max_depth, MAX_DEPTH);

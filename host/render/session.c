@@ -11,8 +11,9 @@
 #include "render/wavefront.h"
 #include "scene/pack_parts.h"
 
-/* Paths of a wave: enough to keep a device busy and few enough to stay near its caches. */
-enum { WAVE_PATHS_CPU = 1 << 17, WAVE_PATHS_GPU = 1 << 20 };
+/* Paths of a wave: enough to keep a device busy and few enough to stay near its caches. The same
+ * for every device, so that a render can be resumed on another one. */
+enum { WAVE_PATHS = 1 << 17 };
 
 enum { ROULETTE_DEPTH = 4, PASS_LIMIT = 4096 };
 
@@ -79,8 +80,7 @@ static void note_scene(cdl_Session *session, const cdl_Pack *pack) {
   cdl_RenderStats *stats = &session->stats;
   stats->triangles = 0;
   for (uint32_t i = 0; i < session->scene->instance_count; i++)
-    stats->triangles +=
-        session->scene->meshes[session->scene->instances[i].mesh].triangle_count;
+    stats->triangles += session->scene->meshes[session->scene->instances[i].mesh].triangle_count;
   stats->instances = session->scene->instance_count;
   stats->lights = pack->light_count;
   stats->bvh_s = pack->bvh.statistics.seconds;
@@ -91,16 +91,14 @@ static void note_scene(cdl_Session *session, const cdl_Pack *pack) {
 static uint32_t wave_paths(const cdl_Session *session) {
   const cdl_Settings *s = &session->settings;
   uint64_t all = (uint64_t)s->crop[2] * s->crop[3] * s->sample_count;
-  uint64_t most = device_info(session->device)->type == CL_DEVICE_TYPE_GPU ? WAVE_PATHS_GPU
-                                                                           : WAVE_PATHS_CPU;
-  uint64_t paths = all < most ? all : most;
+  uint64_t paths = all < WAVE_PATHS ? all : WAVE_PATHS;
   return (uint32_t)((paths + CDL_QUEUE_ALIGNMENT - 1) / CDL_QUEUE_ALIGNMENT * CDL_QUEUE_ALIGNMENT);
 }
 
 /* What suits the device: boxes eight at a time where its vectors are that wide. */
 static int bvh_width(const cdl_Session *session) {
   if (session->settings.bvh_width) return (int)session->settings.bvh_width;
-  return 2;
+  return device_info(session->device)->native_float_width >= 8 ? 8 : 2;
 }
 
 static cdl_Status put_on_device(cdl_Session *session, const cdl_SceneCamera *camera,
@@ -136,9 +134,8 @@ cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_
   status = resolve_settings(s, &camera);
   if (!status) status = watch_kernels(s);
   const cdl_Settings *r = &s->settings;
-  int is_part = r->sample_count < r->samples;
-  if (!status)
-    status = film_create(log, r->crop[2], r->crop[3], r->aovs, is_part, &s->film);
+  int is_part = settings->first_sample || settings->sample_count;
+  if (!status) status = film_create(log, r->crop[2], r->crop[3], r->aovs, is_part, &s->film);
   if (!status) status = put_on_device(s, camera, &pack);
   pack_free(&pack);
   if (status)
@@ -174,8 +171,8 @@ static uint32_t even_side(uint32_t length, uint32_t most) {
   return divide_up(length, divide_up(length, most < length ? most : length));
 }
 
-/* The pass that begins at a session's next block. Tiles of one image have the same size in every pass,
- * so that an interrupted pass can be taken up again. */
+/* The pass that begins at a session's next block. Tiles of one image have the same size in every
+ * pass, so that an interrupted pass can be taken up again. */
 static Pass next_pass(const cdl_Session *session) {
   const cdl_Settings *s = &session->settings;
   uint32_t paths = wavefront_paths(session->wavefront);

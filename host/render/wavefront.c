@@ -106,14 +106,12 @@ static cdl_Status shade_models(cdl_Wavefront *w) {
 /* Light that vertices scatter: choose a light, weigh it, go on, and see whether it was visible. */
 static cdl_Status scatter(cdl_Wavefront *w) {
   uint32_t first_lit = CDL_QUEUE_MODELS + 2 * CDL_MODEL_FIRST_LIT;
-  cdl_Status status =
-      run_queues(w, CDL_KERNEL_medium_vertex, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
+  cdl_Status status = run_queues(w, CDL_KERNEL_medium_vertex, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
   if (!status && w->has_lights)
     status = run_queues(w, CDL_KERNEL_sample_light, first_lit, CDL_QUEUE_MEDIUM);
   if (!status) status = run_queues(w, CDL_KERNEL_pass, CDL_QUEUE_PASS, CDL_QUEUE_PASS);
   if (!status) status = shade_models(w);
-  if (!status)
-    status = run_queues(w, CDL_KERNEL_shade_medium, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
+  if (!status) status = run_queues(w, CDL_KERNEL_shade_medium, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
   if (!status && w->has_lights)
     status = run_queues(w, CDL_KERNEL_occlude, first_lit, CDL_QUEUE_MEDIUM);
   return status;
@@ -159,8 +157,8 @@ static cdl_Status add_to_film(const cdl_Wavefront *w, const float *sums, cdl_Fil
     uint32_t index = wave->first_sample / CDL_BLOCK_SAMPLES + block;
     const float *block_sums = sums + block * wave->channels * pixels;
     for (uint32_t row = 0; row < wave->height && !status; row++) {
-      uint32_t first = (wave->y - w->params.crop_y + row) * w->params.crop_width + wave->x -
-                       w->params.crop_x;
+      uint32_t first =
+          (wave->y - w->params.crop_y + row) * w->params.crop_width + wave->x - w->params.crop_x;
       status = film_add(film, index, samples, first, wave->width,
                         block_sums + (size_t)row * wave->width, pixels);
     }
@@ -197,8 +195,8 @@ cdl_Status wavefront_run(cdl_Wavefront *w, uint32_t x, uint32_t y, uint32_t widt
   w->wave.first_sample = first_sample;
   w->wave.sample_count = samples;
   w->wave.path_count = width * height * samples;
-  w->wave.live = (w->wave.path_count + CDL_QUEUE_ALIGNMENT - 1) / CDL_QUEUE_ALIGNMENT *
-                 CDL_QUEUE_ALIGNMENT;
+  w->wave.live =
+      (w->wave.path_count + CDL_QUEUE_ALIGNMENT - 1) / CDL_QUEUE_ALIGNMENT * CDL_QUEUE_ALIGNMENT;
   cdl_Status status = trace_paths(w, counts);
   return status ? status : develop(w, film, counts);
 }

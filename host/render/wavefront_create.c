@@ -163,8 +163,8 @@ static cdl_Status make_film_channels(cdl_Wavefront *w, const cdl_Film *film) {
   return make_buffer(w, BUFFER_film_channels, channels, sizeof channels);
 }
 
-/* Fields lie an odd number of cache lines apart: at a power of two they would all compete for the same
- * few lines of the cache. */
+/* Fields lie an odd number of cache lines apart: at a power of two they would all compete for the
+ * same few lines of the cache. */
 static uint32_t field_stride(uint32_t entries) {
   uint32_t lines = (entries + 15) / 16;
   return 16 * (lines | 1u);

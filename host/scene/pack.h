@@ -1,8 +1,8 @@
 /* pack.h: a scene laid out as the kernels read it.
  *
- * Meshes that stand in the scene once are baked into the world and share two trees, one of what stops
- * light and one of what light may pass straight through; meshes that stand there more often keep their
- * own tree and are placed by instances. Triangles are numbered shape by shape. */
+ * Meshes that stand in the scene once are baked into the world and share two trees, one of what
+ * stops light and one of what light may pass straight through; meshes that stand there more often
+ * keep their own tree and are placed by instances. Triangles are numbered shape by shape. */
 #ifndef CANDELA_SCENE_PACK_H
 #define CANDELA_SCENE_PACK_H
 
@@ -47,8 +47,9 @@ typedef struct cdl_Pack {
   cdl_Bvh bvh;
 } cdl_Pack;
 
-/* Packs the scene and builds its trees. The scene is only read, and not needed afterwards. Too large a
- * scene, or too little memory, is CDL_BAD_INPUT. Free with pack_free(), also after a failure. */
+/* Packs the scene and builds its trees. The scene is only read, and not needed afterwards. Too
+ * large a scene, or too little memory, is CDL_BAD_INPUT. Free with pack_free(), also after a
+ * failure. */
 cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
 
 /* Frees and zeroes it; fine for an all-zero one. */

@@ -81,7 +81,8 @@ static double cell_luminance(const cdl_Pack *pack, uint32_t column, uint32_t row
   return sum / ((double)nx * ny);
 }
 
-/* Fills the table of cells; *integral is that of the luminance over the sphere, without strength. */
+/* Fills the table of cells; *integral is that of the luminance over the sphere, without strength.
+ */
 static cdl_Status build_cells(const cdl_Log *log, cdl_Pack *pack, double *integral) {
   const cdl_EnvironmentParams *env = &pack->environment_params;
   double *weights = pack_array(log, "texels", pack->cell_count, sizeof *weights);

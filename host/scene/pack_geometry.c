@@ -47,13 +47,13 @@ static void bake_point(const float m[12], const float *p, float *out) {
 
 static void bake_direction(const float m[12], const float *d, float *out) {
   for (int r = 0; r < 3; r++)
-    out[r] =
-        (float)((double)m[4 * r] * d[0] + (double)m[4 * r + 1] * d[1] + (double)m[4 * r + 2] * d[2]);
+    out[r] = (float)((double)m[4 * r] * d[0] + (double)m[4 * r + 1] * d[1] +
+                     (double)m[4 * r + 2] * d[2]);
   normalize(out);
 }
 
-/* Normals turn by the cofactors of the matrix, which are its inverse transpose times its determinant;
- * the sign of that is taken out again. */
+/* Normals turn by the cofactors of the matrix, which are its inverse transpose times its
+ * determinant; the sign of that is taken out again. */
 static void bake_normal(const float m[12], const float *n, float *out) {
   double sign = is_mirrored(m) ? -1.0 : 1.0;
   for (int r = 0; r < 3; r++) {
@@ -156,7 +156,8 @@ static cdl_Status bake_instance(Geometry *g, const cdl_SceneInstance *instance) 
   if (add_shape(g, mesh, instance->to_world, instance->object)) return CDL_BAD_INPUT;
   note_instance(g, mesh, &first_light);
   g->pack->shapes[index].first_light = first_light;
-  int group = material_passable(&g->pack->materials[mesh->material]) ? BAKED_PASSABLE : BAKED_OPAQUE;
+  int group =
+      material_passable(&g->pack->materials[mesh->material]) ? BAKED_PASSABLE : BAKED_OPAQUE;
   g->baked[group][g->baked_count[group]++] = g->parts[index];
   return CDL_OK;
 }
@@ -173,8 +174,8 @@ static cdl_Status place_instance(Geometry *g, const cdl_SceneInstance *instance)
   cdl_BvhPlacement *placement = &g->placements[g->placement_count++];
   placement->mesh = g->mesh_number[instance->mesh];
   memcpy(placement->to_world, instance->to_world, sizeof placement->to_world);
-  placement->mask = material_passable(&g->pack->materials[mesh->material]) ? CDL_MASK_PASSABLE
-                                                                            : CDL_MASK_OPAQUE;
+  placement->mask =
+      material_passable(&g->pack->materials[mesh->material]) ? CDL_MASK_PASSABLE : CDL_MASK_OPAQUE;
   placement->object = instance->object;
   note_instance(g, mesh, &placement->first_light);
   return CDL_OK;
@@ -233,8 +234,9 @@ static cdl_Status reserve(Geometry *g) {
                              sizeof *g->placements);
   for (int i = 0; i < BAKED_COUNT; i++)
     g->baked[i] = pack_array(g->log, "shapes", shapes, sizeof *g->baked[i]);
-  int complete = pack->attributes && pack->triangles && pack->shapes && pack->mesh_shapes && g->parts && g->indices &&
-                 g->meshes && g->placements && g->baked[BAKED_OPAQUE] && g->baked[BAKED_PASSABLE];
+  int complete = pack->attributes && pack->triangles && pack->shapes && pack->mesh_shapes &&
+                 g->parts && g->indices && g->meshes && g->placements && g->baked[BAKED_OPAQUE] &&
+                 g->baked[BAKED_PASSABLE];
   return complete ? CDL_OK : CDL_BAD_INPUT;
 }
 
@@ -255,7 +257,8 @@ cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_wid
   cdl_Status status = reserve(&g);
   for (uint32_t i = 0; !status && i < scene->instance_count; i++) {
     const cdl_SceneInstance *instance = &scene->instances[i];
-    status = g.uses[instance->mesh] == 1 ? bake_instance(&g, instance) : place_instance(&g, instance);
+    status =
+        g.uses[instance->mesh] == 1 ? bake_instance(&g, instance) : place_instance(&g, instance);
   }
   if (!status) {
     place_baked(&g);

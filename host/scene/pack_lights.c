@@ -35,7 +35,8 @@ static double triangle_luminance(const cdl_Pack *pack, const cdl_Shape *shape,
   int points = 0;
   for (int j = 0; j < POWER_POINTS; j++)
     for (int i = 0; i + j < POWER_POINTS; i++, points++) {
-      float u = ((float)i + 1.0f / 3.0f) / POWER_POINTS, v = ((float)j + 1.0f / 3.0f) / POWER_POINTS;
+      float u = ((float)i + 1.0f / 3.0f) / POWER_POINTS,
+            v = ((float)j + 1.0f / 3.0f) / POWER_POINTS;
       TextureCoords uv = shape_texture_coords(shape, pack->attributes, triangle, u, v);
       vec3 e = material_emission(material, uv, pack->textures, pack->texels, pack->srgb);
       sum += color_luminance(e);
@@ -78,13 +79,14 @@ static double pack_triangle_light(const cdl_Pack *pack, const float to_world[12]
   set_vec(light->e1, e1);
   set_vec(light->e2, e2);
   memcpy(light->radiance, material->emission, sizeof light->radiance);
-  double power = (double_sided ? 2.0 : 1.0) * M_PI * light->area * triangle_luminance(pack, shape, triangle);
+  double power =
+      (double_sided ? 2.0 : 1.0) * M_PI * light->area * triangle_luminance(pack, shape, triangle);
   return isfinite(power) ? power : 0.0;
 }
 
 static uint32_t shape_triangles(const cdl_Pack *pack, size_t shape) {
-  size_t end = shape + 1 < pack->shape_count ? pack->shapes[shape + 1].first_triangle
-                                             : pack->triangle_count;
+  size_t end =
+      shape + 1 < pack->shape_count ? pack->shapes[shape + 1].first_triangle : pack->triangle_count;
   return (uint32_t)(end - pack->shapes[shape].first_triangle);
 }
 
@@ -122,8 +124,7 @@ static void set_cone(const cdl_SceneLight *from, cdl_Light *to) {
 
 static double pack_punctual_light(const cdl_SceneLight *from, double radius, cdl_Light *to) {
   memset(to, 0, sizeof *to);
-  to->type =
-      from->type == CDL_PUNCTUAL_DIRECTIONAL ? CDL_LIGHT_DIRECTIONAL : CDL_LIGHT_POINT;
+  to->type = from->type == CDL_PUNCTUAL_DIRECTIONAL ? CDL_LIGHT_DIRECTIONAL : CDL_LIGHT_POINT;
   to->triangle = to->material = CDL_NONE;
   memcpy(to->p, from->position, sizeof to->p);
   memcpy(to->e1, from->direction, sizeof to->e1);
@@ -168,7 +169,8 @@ cdl_Status pack_lights(const cdl_Log *log, const cdl_Scene *scene, double enviro
   }
   pack->light_count = count;
   status = build_table(log, power, pack);
-  if (environment_power > 0.0) pack->environment_params.select_pdf = pack->lights[count - 1].select_pdf;
+  if (environment_power > 0.0)
+    pack->environment_params.select_pdf = pack->lights[count - 1].select_pdf;
 done:
   free(power);
   return status;

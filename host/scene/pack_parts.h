@@ -4,8 +4,8 @@
 
 #include "scene/pack.h"
 
-/* calloc that reports; NULL means failure. A count of 0 gives one zeroed element, so that kernels have
- * something to point at. */
+/* calloc that reports; NULL means failure. A count of 0 gives one zeroed element, so that kernels
+ * have something to point at. */
 void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size);
 
 cdl_Status pack_textures(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);

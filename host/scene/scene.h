@@ -1,8 +1,8 @@
 /* scene.h: the host's model of a scene, as loaded and before anything is packed for a device.
  *
  * Units and conventions: metres, seconds, right-handed, +Y up; linear RGB with Rec. 709 primaries;
- * textures are kept as stored and decoded where they are looked up. Matrices are 3x4, row-major, the
- * last column the translation. Indices refer to the arrays of cdl_Scene; CDL_NONE means none.
+ * textures are kept as stored and decoded where they are looked up. Matrices are 3x4, row-major,
+ * the last column the translation. Indices refer to the arrays of cdl_Scene; CDL_NONE means none.
  * Every array belongs to the scene and is freed by scene_free(). */
 #ifndef CANDELA_SCENE_SCENE_H
 #define CANDELA_SCENE_SCENE_H
@@ -22,7 +22,7 @@ extern "C" {
 typedef struct cdl_SceneTexture {
   uint32_t image;
   uint32_t wrap_s, wrap_t; /* CDL_WRAP_* */
-  int nearest; /* nearest texel instead of bilinear */
+  int nearest;             /* nearest texel instead of bilinear */
 } cdl_SceneTexture;
 
 /* glTF's textureInfo: which texture, which coordinates, and KHR_texture_transform as a 2x3 matrix,
@@ -38,18 +38,18 @@ typedef enum cdl_Distribution { CDL_GGX, CDL_BECKMANN } cdl_Distribution;
 typedef enum cdl_Masking { CDL_MASKING_CORRELATED, CDL_MASKING_SEPARABLE } cdl_Masking;
 
 typedef struct cdl_SceneMaterial {
-  char *name; /* never NULL, may be empty */
+  char *name;     /* never NULL, may be empty */
   uint32_t model; /* CDL_MODEL_* */
   int double_sided;
   cdl_AlphaMode alpha_mode;
   float alpha_cutoff;
-  float base[4];     /* base colour, reflectance or transmittance, and opacity */
-  float metallic;    /* [0,1] */
-  float roughness;   /* glTF's, [0,1]; alpha is its square (gltf model only) */
-  float alpha[2];    /* microfacet alpha along tangent and bitangent (CDL models) */
+  float base[4];   /* base colour, reflectance or transmittance, and opacity */
+  float metallic;  /* [0,1] */
+  float roughness; /* glTF's, [0,1]; alpha is its square (gltf model only) */
+  float alpha[2];  /* microfacet alpha along tangent and bitangent (CDL models) */
   cdl_Distribution distribution;
   cdl_Masking masking;
-  float ior;         /* inside over outside; >= 1 for glTF, > 0 for CDL models; 0 means infinite */
+  float ior;          /* inside over outside; >= 1 for glTF, > 0 for CDL models; 0 means infinite */
   float eta[3], k[3]; /* complex index of a conductor, per channel */
   int thin;
   float normal_scale;
@@ -60,8 +60,8 @@ typedef struct cdl_SceneMaterial {
       emission_texture, transmission_texture;
 } cdl_SceneMaterial;
 
-/* One glTF primitive: indexed triangles of one material. Absent attributes are NULL; normals that the
- * file leaves out are absent (flat shading, as glTF prescribes). */
+/* One glTF primitive: indexed triangles of one material. Absent attributes are NULL; normals that
+ * the file leaves out are absent (flat shading, as glTF prescribes). */
 typedef struct cdl_SceneMesh {
   uint32_t vertex_count, triangle_count;
   uint32_t material; /* index; the default material of glTF has an entry of its own if used */
@@ -99,10 +99,10 @@ typedef struct cdl_SceneLight {
 typedef struct cdl_SceneCamera {
   char *name;
   int orthographic;
-  float to_world[12]; /* looks along -Z, +Y up */
-  float yfov;         /* radians */
-  float xmag, ymag;   /* half width and height, m, orthographic only */
-  float aspect;       /* width over height; 0: free */
+  float to_world[12];                    /* looks along -Z, +Y up */
+  float yfov;                            /* radians */
+  float xmag, ymag;                      /* half width and height, m, orthographic only */
+  float aspect;                          /* width over height; 0: free */
   float aperture_radius, focus_distance; /* m; radius 0: pinhole */
   uint32_t blades;                       /* 0: round */
   float shutter[2];                      /* s */
@@ -159,12 +159,13 @@ struct cdl_Scene {
 };
 
 typedef struct cdl_SceneOptions {
-  double time;        /* animation time, s */
+  double time; /* animation time, s */
 } cdl_SceneOptions;
 
-/* Loads a .gltf or .glb with all it refers to. Files outside the scene's folder are refused. A damaged
- * file is CDL_BAD_INPUT with one line that names file, JSON pointer and the Khronos validator's code;
- * what is only odd is noted. *scene is set on success alone; free it with scene_free(). */
+/* Loads a .gltf or .glb with all it refers to. Files outside the scene's folder are refused. A
+ * damaged file is CDL_BAD_INPUT with one line that names file, JSON pointer and the Khronos
+ * validator's code; what is only odd is noted. *scene is set on success alone; free it with
+ * scene_free(). */
 cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptions *options,
                       struct cdl_Scene **scene);
 

@@ -7,7 +7,7 @@
 #define CDL_FILM_CHANNELS_MAX 32u
 
 typedef struct cdl_FilmChannel {
-  uint field; /* CDL_SLOT_* of its word */
+  uint field;      /* CDL_SLOT_* of its word */
   uint first_only; /* 1: not added: the bits of the first sample */
   uint pad[2];
 } cdl_FilmChannel;

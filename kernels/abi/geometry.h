@@ -21,12 +21,12 @@ typedef struct cdl_Shape {
   uint material;
   uint object;         /* node number; CDL_NONE: the instance says it */
   uint first_triangle; /* global number of its first triangle */
-  uint first_light;    /* light of its first triangle; CDL_NONE: the instance says it, or no light */
-  uint positions;      /* 3 floats a vertex; never CDL_NONE */
-  uint normals;        /* 3 floats a vertex, unit */
-  uint tangents;       /* 4 floats a vertex: unit tangent and handedness */
-  uint uv[2];          /* 2 floats a vertex */
-  uint colors;         /* 4 floats a vertex: linear RGB and opacity */
+  uint first_light; /* light of its first triangle; CDL_NONE: the instance says it, or no light */
+  uint positions;   /* 3 floats a vertex; never CDL_NONE */
+  uint normals;     /* 3 floats a vertex, unit */
+  uint tangents;    /* 4 floats a vertex: unit tangent and handedness */
+  uint uv[2];       /* 2 floats a vertex */
+  uint colors;      /* 4 floats a vertex: linear RGB and opacity */
   uint pad[2];
 } cdl_Shape;
 CDL_ABI_SIZE(cdl_Shape, 48);

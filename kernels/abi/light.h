@@ -13,8 +13,9 @@
 #define CDL_LIGHT_DOUBLE_SIDED 1u /* emits from both sides */
 #define CDL_LIGHT_MIRRORED 2u     /* the front is at -(e1 x e2): its instance mirrors it */
 
-/* A light. Triangles: corner p, edges e1 and e2 in the world, e1 x e2 to the front. Points: position p,
- * axis e1 (unit, where a spot shines). Directional: e1 is where the light goes, unit. */
+/* A light. Triangles: corner p, edges e1 and e2 in the world, e1 x e2 to the front. Points:
+ * position p, axis e1 (unit, where a spot shines). Directional: e1 is where the light goes, unit.
+ */
 typedef struct cdl_Light {
   uint type;
   float select_pdf; /* probability of being chosen */
@@ -25,9 +26,9 @@ typedef struct cdl_Light {
   float e1[3];
   float range; /* of a point, m; 0: unlimited */
   float e2[3];
-  uint flags;         /* CDL_LIGHT_DOUBLE_SIDED, CDL_LIGHT_MIRRORED */
-  float radiance[3];  /* triangle: radiance; point: intensity, W/sr; directional: irradiance, W/m2 */
-  float cone_scale;   /* KHR_lights_punctual: clamp(cos scale + offset)^2; 0 and 1: no cone */
+  uint flags;        /* CDL_LIGHT_DOUBLE_SIDED, CDL_LIGHT_MIRRORED */
+  float radiance[3]; /* triangle: radiance; point: intensity, W/sr; directional: irradiance, W/m2 */
+  float cone_scale;  /* KHR_lights_punctual: clamp(cos scale + offset)^2; 0 and 1: no cone */
   float cone_offset;
   uint pad[3];
 } cdl_Light;

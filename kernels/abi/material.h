@@ -4,8 +4,8 @@
 
 #include "abi/types.h"
 
-/* Material models; each has a queue and a shading kernel of its own (kernels/bsdf). Those with delta
- * lobes alone come first: no light is sampled for them. */
+/* Material models; each has a queue and a shading kernel of its own (kernels/bsdf). Those with
+ * delta lobes alone come first: no light is sampled for them. */
 #define CDL_MODEL_UNLIT 0u
 #define CDL_MODEL_MIRROR 1u
 #define CDL_MODEL_DIELECTRIC 2u
@@ -48,7 +48,7 @@ typedef struct cdl_Material {
   float normal_scale;
   float k[3];
   uint pad;
-  cdl_TextureSlot base_texture; /* colour */
+  cdl_TextureSlot base_texture;  /* colour */
   cdl_TextureSlot param_texture; /* G: roughness, B: metallic (glTF); R scales alpha (others) */
   cdl_TextureSlot normal_texture;
   cdl_TextureSlot emission_texture; /* colour */

@@ -1,4 +1,5 @@
-/* params.h: what a render keeps constant (cdl_Params), and what changes from wave to wave (cdl_Wave). */
+/* params.h: what a render keeps constant (cdl_Params), and what changes from wave to wave
+ * (cdl_Wave). */
 #ifndef CDL_ABI_PARAMS_H
 #define CDL_ABI_PARAMS_H
 
@@ -8,8 +9,8 @@
 
 typedef struct cdl_CameraParams {
   float to_world[12]; /* 3x4, row-major; looks along -Z */
-  float scale[2];     /* half width and height of the image: at distance 1, or in m if orthographic */
-  float lens_radius;  /* m; 0: pinhole */
+  float scale[2]; /* half width and height of the image: at distance 1, or in m if orthographic */
+  float lens_radius; /* m; 0: pinhole */
   float focus_distance;
   uint orthographic;
   uint blades;                /* of the aperture, at least 1; below 3: round */
@@ -18,12 +19,13 @@ typedef struct cdl_CameraParams {
 CDL_ABI_SIZE(cdl_CameraParams, 80);
 
 typedef struct cdl_EnvironmentParams {
-  uint present;  /* 0: black */
+  uint present;       /* 0: black */
   uint width, height; /* texels; 1 x 1 for a constant one */
-  uint columns, rows; /* cells of the importance table; each divides the sphere like the texels do */
-  float scale[3];     /* strength */
+  uint columns,
+      rows;       /* cells of the importance table; each divides the sphere like the texels do */
+  float scale[3]; /* strength */
   float rotation_cos, rotation_sin; /* about +Y, counter-clockwise seen from above */
-  float select_pdf;   /* probability that light sampling chooses it */
+  float select_pdf;                 /* probability that light sampling chooses it */
   uint pad;
 } cdl_EnvironmentParams;
 CDL_ABI_SIZE(cdl_EnvironmentParams, 48);
@@ -31,18 +33,18 @@ CDL_ABI_SIZE(cdl_EnvironmentParams, 48);
 typedef struct cdl_Params {
   cdl_CameraParams camera;
   cdl_EnvironmentParams environment;
-  uint width, height;   /* of the full image, pixels */
-  uint crop_x, crop_y;  /* what is rendered of it */
+  uint width, height;  /* of the full image, pixels */
+  uint crop_x, crop_y; /* what is rendered of it */
   uint crop_width, crop_height;
   uint seed;
-  uint max_depth;       /* scattering events after the camera ray */
-  uint roulette_depth;  /* events before Russian roulette begins */
+  uint max_depth;      /* scattering events after the camera ray */
+  uint roulette_depth; /* events before Russian roulette begins */
   uint light_count;
-  uint top_root;        /* of the bounding volume hierarchy */
-  uint scene_medium;    /* index into the media */
+  uint top_root;         /* of the bounding volume hierarchy */
+  uint scene_medium;     /* index into the media */
   float scene_center[3]; /* sphere around the world's bounds */
   float scene_radius;
-  uint pass_limit;      /* surfaces that a path may cross without scattering */
+  uint pass_limit; /* surfaces that a path may cross without scattering */
   uint pad[3];
 } cdl_Params;
 CDL_ABI_SIZE(cdl_Params, 208);
@@ -53,9 +55,9 @@ typedef struct cdl_Wave {
   uint x, y, width, height; /* pixels of the full image */
   uint first_sample, sample_count;
   uint path_count;
-  uint stride;     /* words between two fields of a path's state */
-  uint slots;      /* words between two fields that are indexed by slot */
-  uint live;   /* entries of the path state in use, pads included */
+  uint stride;   /* words between two fields of a path's state */
+  uint slots;    /* words between two fields that are indexed by slot */
+  uint live;     /* entries of the path state in use, pads included */
   uint channels; /* of the film */
   uint pad;
 } cdl_Wave;

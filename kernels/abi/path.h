@@ -8,7 +8,8 @@
 /* CDL_PATH_ORIGIN, … : first word-array of each field; CDL_PATH_FIELDS: how many there are. */
 #define CDL_FIELD(set, name, words) CDL_FIELD_##set(name, words)
 #define CDL_FIELD_NONE(name, words)
-#define CDL_FIELD_ENUM(prefix, name, words) prefix##name, prefix##name##_END = prefix##name + (words)-1,
+#define CDL_FIELD_ENUM(prefix, name, words)                                                        \
+  prefix##name, prefix##name##_END = prefix##name + (words)-1,
 
 #define CDL_FIELD_PATH(name, words) CDL_FIELD_ENUM(CDL_PATH_, name, words)
 #define CDL_FIELD_WORK(name, words)
@@ -42,8 +43,8 @@ enum {
 #define CDL_VERTEX_INTERFACE 2u /* the material is the boundary of a medium and nothing else */
 
 /* Queues, in the order in which they lie after a sort. Each model has two, the second for emissive
- * materials, so that a model's paths lie together and its emitters together within them. All surfaces
- * are neighbours, and so are all vertices that sample lights. */
+ * materials, so that a model's paths lie together and its emitters together within them. All
+ * surfaces are neighbours, and so are all vertices that sample lights. */
 #define CDL_QUEUE_ESCAPED 0u
 #define CDL_QUEUE_PASS 1u   /* surfaces that let the path through: interfaces, holes */
 #define CDL_QUEUE_MODELS 2u /* + 2 model + emissive */
@@ -51,7 +52,7 @@ enum {
 #define CDL_QUEUE_ENDED (CDL_QUEUE_MEDIUM + 1u) /* counted, but not moved: too deep to go on */
 #define CDL_QUEUE_COUNT (CDL_QUEUE_ENDED + 1u)
 #define CDL_QUEUE_SHADOWS CDL_QUEUE_COUNT /* no queue: its count is that of the shadow rays */
-#define CDL_QUEUE_LIVE 0u /* written by shading: to be traced */
+#define CDL_QUEUE_LIVE 0u                 /* written by shading: to be traced */
 #define CDL_QUEUE_DEAD 0xffffffffu
 
 /* Queues begin at multiples of this and are padded to it, so that work-groups are full. */
@@ -69,7 +70,8 @@ typedef struct cdl_QueueRange {
 } cdl_QueueRange;
 CDL_ABI_SIZE(cdl_QueueRange, 16);
 
-/* Entries of the source table of a sort: where the path comes from; a pad has this bit and its slot. */
+/* Entries of the source table of a sort: where the path comes from; a pad has this bit and its
+ * slot. */
 #define CDL_SOURCE_PAD 0x80000000u
 
 #endif

@@ -1,8 +1,9 @@
-/* path_fields.h: the state of a path, field by field; included by abi/path.h, which makes enums of it.
- * CDL_FIELD(set, name, words); every field is a structure of arrays of 4-byte words.
+/* path_fields.h: the state of a path, field by field; included by abi/path.h, which makes enums of
+ * it. CDL_FIELD(set, name, words); every field is a structure of arrays of 4-byte words.
  *
- * PATH fields travel with the path when paths are sorted into queues. WORK fields belong to one vertex
- * and lie beside the PATH fields of the same index. SLOT fields stay where the path began. */
+ * PATH fields travel with the path when paths are sorted into queues. WORK fields belong to one
+ * vertex and lie beside the PATH fields of the same index. SLOT fields stay where the path began.
+ */
 
 /* Ray: origin in m, direction of unit length. */
 CDL_FIELD(PATH, ORIGIN, 3)
@@ -12,7 +13,8 @@ CDL_FIELD(PATH, THROUGHPUT, 3)
 /* Solid-angle density of the direction, 1/sr; 0: it could not have been chosen otherwise (camera,
  * delta lobe), so no light sampling competes with it. */
 CDL_FIELD(PATH, PDF, 1)
-/* m from the last scattering event (or the camera) to the origin, through surfaces that were passed. */
+/* m from the last scattering event (or the camera) to the origin, through surfaces that were
+ * passed. */
 CDL_FIELD(PATH, TRAVELLED, 1)
 /* Slot, see cdl_Wave; slots from path_count on are trash cans for padding. */
 CDL_FIELD(PATH, SLOT, 1)
@@ -20,7 +22,8 @@ CDL_FIELD(PATH, SLOT, 1)
 CDL_FIELD(PATH, COUNTS, 1)
 /* Media entered and not left, innermost first, 16 bits each: index + 1, 0 ends the list. */
 CDL_FIELD(PATH, MEDIA, 2)
-/* Hit: distance in m (infinite: none), barycentrics of corners 1 and 2, global triangle, instance. */
+/* Hit: distance in m (infinite: none), barycentrics of corners 1 and 2, global triangle, instance.
+ */
 CDL_FIELD(PATH, HIT_T, 1)
 CDL_FIELD(PATH, HIT_U, 1)
 CDL_FIELD(PATH, HIT_V, 1)
@@ -58,8 +61,8 @@ CDL_FIELD(WORK, SHADOW_COUNT, 1)
 
 /* Radiance of the sample, RGB. */
 CDL_FIELD(SLOT, RADIANCE, 3)
-/* Of the first surface, for AOVs: colour, shading normal, distance from the camera plane in m, position
- * in m, emitted radiance, glTF node and material + 1 (0: none), as whole floats. */
+/* Of the first surface, for AOVs: colour, shading normal, distance from the camera plane in m,
+ * position in m, emitted radiance, glTF node and material + 1 (0: none), as whole floats. */
 CDL_FIELD(SLOT, ALBEDO, 3)
 CDL_FIELD(SLOT, AOV_NORMAL, 3)
 CDL_FIELD(SLOT, DEPTH, 1)

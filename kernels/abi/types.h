@@ -9,7 +9,8 @@ typedef uint32_t uint;
 #endif
 
 /* Fails to compile where sizeof(type) is not `bytes`. */
-#define CDL_ABI_SIZE(type, bytes) typedef char type##_size_is_##bytes[sizeof(type) == (bytes) ? 1 : -1]
+#define CDL_ABI_SIZE(type, bytes)                                                                  \
+  typedef char type##_size_is_##bytes[sizeof(type) == (bytes) ? 1 : -1]
 
 #define CDL_NONE 0xffffffffu /* no index */
 

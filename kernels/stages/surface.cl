@@ -49,11 +49,11 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_BvhInsta
     uv = shape_texture_coords(shape, attributes, triangle, u, v);
     normal = mapped_normal(point, material, uv, textures, texels, srgb);
     uv = texture_coords_after(normal.x, uv);
-  Texel param = texture_lookup(&material->param_texture, textures, texels, srgb, uv, 0);
+    Texel param = texture_lookup(&material->param_texture, textures, texels, srgb, uv, 0);
     int is_gltf = material->model == CDL_MODEL_GLTF;
     roughness = is_gltf ? param.g : param.r;
     metallic = param.b;
-  uv = texture_coords_after(metallic, uv);
+    uv = texture_coords_after(metallic, uv);
 #else
     uv.u0 = uv.v0 = uv.u1 = uv.v1 = uv.pad = 0.0f;
 #endif
