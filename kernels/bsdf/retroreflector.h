@@ -19,7 +19,7 @@ CDL_INLINE Microfacets retroreflector_surface(BsdfParams p) {
 /* Reflectance times what passes the coat, by channel. */
 CDL_INLINE vec3 retroreflector_tint(BsdfParams p, vec3 wo, vec3 wi) {
   float in = 1.0f - fresnel_dielectric(math_saturate(wi.z), p.ior).reflectance;
-  float out = 1.0f - fresnel_dielectric(math_saturate(wo.z), p.ior).reflectance;
+  float out = 1.0f - fresnel_dielectric(math_after(in, math_saturate(wo.z)), p.ior).reflectance;
   return v3_scale(p.base, in * out);
 }
 

@@ -27,7 +27,9 @@ CDL_INLINE Frame frame_from_normal(vec3 n) {
  * gives the x axis of frame_from_normal. The bitangent of a mirrored texture (glTF's tangent.w =
  * -1) is -y. */
 CDL_INLINE Frame frame_from_tangent(vec3 n, vec3 tangent) {
-  float size = math_max(math_abs(tangent.x), math_max(math_abs(tangent.y), math_abs(tangent.z)));
+  float size = math_abs(tangent.x);
+  size = math_max(size, math_abs(math_after(size, tangent.y)));
+  size = math_max(size, math_abs(math_after(size, tangent.z)));
   vec3 t = v3(tangent.x / (size > 0.0f ? size : 1.0f), tangent.y / (size > 0.0f ? size : 1.0f),
               tangent.z / (size > 0.0f ? size : 1.0f));
   t = v3_madd(t, -v3_dot(t, n), n);

@@ -34,8 +34,8 @@ CDL_INLINE float math_safe_sqrt(float x) { return sqrt(math_max(0.0f, x)); }
 
 CDL_INLINE float math_abs(float x) { return as_float(as_uint(x) & 0x7fffffffu); }
 
-/* The sign bit of x, and none for -0: compilers that turn x + 0 into x make the sign of a zero differ
- * from device to device, so nothing may depend on it. */
+/* The sign bit of x, and none for -0: compilers that turn x + 0 into x make the sign of a zero
+ * differ from device to device, so nothing may depend on it. */
 CDL_INLINE uint math_sign_bit(float x) { return x < 0.0f ? 0x80000000u : 0u; }
 
 CDL_INLINE float math_copysign(float magnitude, float sign) {
@@ -68,10 +68,11 @@ CDL_INLINE int math_round_int(float x) { return (int)(as_uint(x + 12582912.0f) -
 /* 2^n for -126 <= n <= 127 */
 CDL_INLINE float math_pow2i(int n) { return as_float((uint)(n + 127) << 23); }
 
-/* x, for compilers a result of `before` as well. PoCL lets LLVM pack like operations on two values of
- * one work-item into a vector of two before it looks at the loop over work-items, and one such vector
- * keeps that loop from being vectorised, which costs a factor of 5. What depends on `before` cannot be
- * packed with it. It costs nothing: the zero is known, and gone, once the work-group's size is. */
+/* x, for compilers a result of `before` as well. PoCL lets LLVM pack like operations on two values
+ * of one work-item into a vector of two before it looks at the loop over work-items, and one such
+ * vector keeps that loop from being vectorised, which costs a factor of 5. What depends on `before`
+ * cannot be packed with it. It costs nothing: the zero is known, and gone, once the work-group's
+ * size is. */
 CDL_INLINE float math_after(float before, float x) {
   return as_float(as_uint(x) ^ (as_uint(before) & CDL_HIDDEN_ZERO));
 }
@@ -311,11 +312,11 @@ CDL_INLINE float math_atan2(float y, float x) {
   float ax = math_min(math_abs(x), 3.40282347e+38f);
   float ay = math_min(math_abs(math_after(ax, y)), 3.40282347e+38f);
   float large = math_max(ax, ay);
-  float small = math_min(ax, ay);
+  float small = math_min(ax, math_after(large, ay));
   /* keeps the sum below finite */
   float scale = large > 4.2535296e+37f ? 0.25f : 1.0f;
   large *= scale;
-  small *= scale;
+  small = math_after(large, small) * scale;
   /* atan(t) = pi/4 + atan((t - 1) / (t + 1)) beyond tan(pi/8), with one division either way */
   int beyond = small > 0.414213562f * large;
   float numerator = beyond ? small - large : small;

@@ -1,7 +1,7 @@
 /* portable.h: the little that lets library headers compile as OpenCL C 1.2 and as C11.
  *
- * Arithmetic is exact by contract: no contraction, no library transcendental, so that host and every
- * device compute the same bits. Include this first in every kernel translation unit. */
+ * Arithmetic is exact by contract: no contraction, no library transcendental, so that host and
+ * every device compute the same bits. Include this first in every kernel translation unit. */
 #ifndef CDL_PORTABLE_H
 #define CDL_PORTABLE_H
 
@@ -14,6 +14,13 @@
 #define CDL_GLOBAL __global
 #define CDL_CONSTANT __constant
 
+/* 0; PoCL cannot know that before it knows the work-group's size; see math_after. */
+#ifdef POCL_DEVICE_ADDRESS_BITS
+#define CDL_HIDDEN_ZERO ((uint)(get_local_size(2) >> 31))
+#else
+#define CDL_HIDDEN_ZERO 0u
+#endif
+
 #else
 
 #include <tgmath.h>
@@ -23,6 +30,7 @@
 #define CDL_INLINE static inline __attribute__((always_inline, unused))
 #define CDL_GLOBAL
 #define CDL_CONSTANT const
+#define CDL_HIDDEN_ZERO 0u
 
 typedef uint32_t uint;
 

@@ -1,5 +1,5 @@
-/* texture.h: looking up images, bilinear or nearest, without image samplers, whose filtering differs
- * from device to device. Texel centres lie at (i + 1/2) / n; image row 0 is the top. */
+/* texture.h: looking up images, bilinear or nearest, without image samplers, whose filtering
+ * differs from device to device. Texel centres lie at (i + 1/2) / n; image row 0 is the top. */
 #ifndef CDL_TEXTURE_H
 #define CDL_TEXTURE_H
 
@@ -10,7 +10,8 @@
 
 /* What textures are read from. `srgb`: 256 floats, the linear value of each sRGB code. */
 #define CDL_TEXTURE_ARGS                                                                           \
-  CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels, CDL_GLOBAL const float *srgb
+  CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,                           \
+      CDL_GLOBAL const float *srgb
 
 typedef struct Texel {
   float r, g, b, a, pad;
@@ -19,6 +20,13 @@ typedef struct Texel {
 typedef struct TextureCoords {
   float u0, v0, u1, v1, pad; /* both sets */
 } TextureCoords;
+
+/* The same coordinates, see math_after: for another look-up in the same kernel. */
+CDL_INLINE TextureCoords texture_coords_after(float before, TextureCoords uv) {
+  uv.u0 = math_after(before, uv.u0);
+  uv.u1 = math_after(before, uv.u1);
+  return uv;
+}
 
 CDL_INLINE Texel texel_make(float r, float g, float b, float a) {
   Texel t;
@@ -33,7 +41,7 @@ CDL_INLINE Texel texel_make(float r, float g, float b, float a) {
 /* A texture coordinate brought into [0,1]. */
 CDL_INLINE float texture_wrap(float u, uint wrap) {
   float repeated = u - floor(u);
-  float half_turns = 0.5f * u;
+  float half_turns = 0.5f * math_after(repeated, u);
   float mirrored = 2.0f * (half_turns - floor(half_turns));
   mirrored = mirrored > 1.0f ? 2.0f - mirrored : mirrored;
   float w = wrap == CDL_WRAP_REPEAT ? repeated : wrap == CDL_WRAP_MIRROR ? mirrored : u;
@@ -60,13 +68,15 @@ CDL_INLINE Texel texture_texel(CDL_GLOBAL const cdl_Texture *texture, CDL_GLOBAL
   int is_float = texture->format == CDL_TEXEL_RGBA32F;
   size_t first = (size_t)texture->first + (is_float ? 4u * index : index);
   uint word = texels[first];
-  Texel code = texel_make(texture_code(word, 0u, srgb, decode), texture_code(word, 8u, srgb, decode),
-                          texture_code(word, 16u, srgb, decode), texture_code(word, 24u, srgb, 0));
+  Texel code =
+      texel_make(texture_code(word, 0u, srgb, decode), texture_code(word, 8u, srgb, decode),
+                 texture_code(word, 16u, srgb, decode), texture_code(word, 24u, srgb, 0));
   size_t next = is_float ? 1u : 0u;
-  return texel_make(is_float ? as_float(word) : code.r,
-                    is_float ? as_float(texels[first + next]) : code.g,
-                    is_float ? as_float(texels[first + 2u * next]) : code.b,
-                    is_float ? as_float(texels[first + 3u * next]) : code.a);
+  uint green = texels[first + next];
+  uint blue = texels[first + 2u * next];
+  uint alpha = texels[first + 3u * next];
+  return texel_make(is_float ? as_float(word) : code.r, is_float ? as_float(green) : code.g,
+                    is_float ? as_float(blue) : code.b, is_float ? as_float(alpha) : code.a);
 #else
   uint word = texels[(size_t)texture->first + index];
   return texel_make(texture_code(word, 0u, srgb, decode), texture_code(word, 8u, srgb, decode),
@@ -75,23 +85,28 @@ CDL_INLINE Texel texture_texel(CDL_GLOBAL const cdl_Texture *texture, CDL_GLOBAL
 }
 
 CDL_INLINE Texel texel_lerp(Texel a, Texel b, float t) {
-  return texel_make(math_lerp(a.r, b.r, t), math_lerp(a.g, b.g, t), math_lerp(a.b, b.b, t),
-                    math_lerp(a.a, b.a, t));
+  float red = math_lerp(a.r, math_after(a.r, b.r), t);
+  float green = math_lerp(a.g, math_after(a.g, b.g), math_after(red, t));
+  float blue = math_lerp(a.b, math_after(a.b, b.b), math_after(green, t));
+  float alpha = math_lerp(a.a, math_after(a.a, b.a), math_after(blue, t));
+  return texel_make(red, green, blue, alpha);
 }
 
-CDL_INLINE Texel texture_sample(CDL_GLOBAL const cdl_Texture *texture, CDL_GLOBAL const uint *texels,
-                                CDL_GLOBAL const float *srgb, float u, float v, int decode) {
+CDL_INLINE Texel texture_sample(CDL_GLOBAL const cdl_Texture *texture,
+                                CDL_GLOBAL const uint *texels, CDL_GLOBAL const float *srgb,
+                                float u, float v, int decode) {
   int width = (int)texture->width;
   int height = (int)texture->height;
   float half_texel = texture->nearest ? 0.0f : 0.5f;
   float x = texture_wrap(u, texture->wrap_s) * (float)width - half_texel;
-  float y = texture_wrap(v, texture->wrap_t) * (float)height - half_texel;
   float x_floor = floor(x);
-  float y_floor = floor(y);
   int x0 = texture_neighbour((int)x_floor, width, texture->wrap_s);
+  int x1 = texture_neighbour((int)math_after((float)x0, x_floor) + 1, width, texture->wrap_s);
+  float v_after = math_after((float)x1, v);
+  float y = texture_wrap(v_after, texture->wrap_t) * (float)height - half_texel;
+  float y_floor = floor(y);
   int y0 = texture_neighbour((int)y_floor, height, texture->wrap_t);
-  int x1 = texture_neighbour((int)x_floor + 1, width, texture->wrap_s);
-  int y1 = texture_neighbour((int)y_floor + 1, height, texture->wrap_t);
+  int y1 = texture_neighbour((int)math_after((float)y0, y_floor) + 1, height, texture->wrap_t);
   float fx = texture->nearest ? 0.0f : x - x_floor;
   float fy = texture->nearest ? 0.0f : y - y_floor;
   Texel top = texel_lerp(texture_texel(texture, texels, srgb, x0, y0, decode),

@@ -1,8 +1,8 @@
 /* environment.h: light from infinity, a latitude-longitude map.
  *
- * u = 1/2 + atan2(z, x) / 2 pi, v = acos(y) / pi: the centre column lies towards +X, the top row is +Y.
- * Sampling chooses a cell of a grid of equal angles by the alias method, in proportion to the light
- * that comes from it, and a direction in it uniformly by solid angle. */
+ * u = 1/2 + atan2(z, x) / 2 pi, v = acos(y) / pi: the centre column lies towards +X, the top row is
+ * +Y. Sampling chooses a cell of a grid of equal angles by the alias method, in proportion to the
+ * light that comes from it, and a direction in it uniformly by solid angle. */
 #ifndef CDL_LIGHT_ENVIRONMENT_H
 #define CDL_LIGHT_ENVIRONMENT_H
 
@@ -36,10 +36,13 @@ CDL_INLINE vec3 environment_texel(CDL_GLOBAL const float *texels, uint width, in
 }
 
 CDL_INLINE vec3 environment_lerp(vec3 a, vec3 b, float t) {
-  return v3(math_lerp(a.x, b.x, t), math_lerp(a.y, b.y, t), math_lerp(a.z, b.z, t));
+  float x = math_lerp(a.x, b.x, t);
+  float y = math_lerp(a.y, b.y, math_after(x, t));
+  return v3(x, y, math_lerp(a.z, b.z, math_after(y, t)));
 }
 
-/* Radiance from a direction: bilinear, around the corner sideways, constant beyond first and last row. */
+/* Radiance from a direction: bilinear, around the corner sideways, constant beyond first and last
+ * row. */
 CDL_INLINE vec3 environment_radiance(CDL_CONSTANT cdl_EnvironmentParams *env,
                                      CDL_GLOBAL const float *texels, vec3 direction) {
   float u, v;
@@ -47,7 +50,7 @@ CDL_INLINE vec3 environment_radiance(CDL_CONSTANT cdl_EnvironmentParams *env,
   int width = (int)env->width;
   int height = (int)env->height;
   float x = u * (float)width - 0.5f;
-  float y = v * (float)height - 0.5f;
+  float y = math_after(x, v) * (float)height - 0.5f;
   float x_floor = floor(x);
   float y_floor = floor(y);
   int x0 = (int)x_floor;
@@ -78,7 +81,7 @@ CDL_INLINE float environment_row_height(CDL_CONSTANT cdl_EnvironmentParams *env,
   float rows = (float)(int)env->rows;
   float middle, half_row, cosine;
   math_sincos_2pi(((float)row + 0.5f) / (2.0f * rows), &middle, &cosine);
-  math_sincos_2pi(0.25f / rows, &half_row, &cosine);
+  math_sincos_2pi(0.25f / math_after(middle, rows), &half_row, &cosine);
   return 2.0f * middle * half_row;
 }
 
@@ -124,8 +127,8 @@ CDL_INLINE LightSample environment_sample(CDL_CONSTANT cdl_EnvironmentParams *en
   vec3 direction = environment_from_map(env, v3(ring * cosine, y, ring * sine));
   float pdf = environment_cell_pdf(env, cells[(uint)cell].pdf, height);
   vec3 radiance = environment_radiance(env, texels, direction);
-  return light_sample_make(direction, CDL_INFINITY, v3_scale(radiance, pdf > 0.0f ? 1.0f / pdf : 0.0f),
-                           pdf);
+  return light_sample_make(direction, CDL_INFINITY,
+                           v3_scale(radiance, pdf > 0.0f ? 1.0f / pdf : 0.0f), pdf);
 }
 
 #endif
