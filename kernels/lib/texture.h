@@ -111,8 +111,9 @@ CDL_INLINE Texel texture_sample(CDL_GLOBAL const cdl_Texture *texture,
   float fy = texture->nearest ? 0.0f : y - y_floor;
   Texel top = texel_lerp(texture_texel(texture, texels, srgb, x0, y0, decode),
                          texture_texel(texture, texels, srgb, x1, y0, decode), fx);
+  float fx_after = math_after(top.a, fx);
   Texel bottom = texel_lerp(texture_texel(texture, texels, srgb, x0, y1, decode),
-                            texture_texel(texture, texels, srgb, x1, y1, decode), fx);
+                            texture_texel(texture, texels, srgb, x1, y1, decode), fx_after);
   return texel_lerp(top, bottom, fy);
 }
 
