@@ -73,10 +73,15 @@ CDL_INLINE uint bvh_enter(BvhRay ray, CDL_GLOBAL const BvhNode *nodes, uint at, 
   bvh_boxes(ray, node, limit, &enter, &leave);
   (void)any;
   if (enter.x <= leave.x && enter.y <= leave.y) {
-    uint later = enter.y < enter.x ? 0u : 1u;
-    LANES_PREFETCH(nodes + (node->child[later] & CDL_BVH_INDEX));
-    bvh_put(stack, (*top)++, node->child[later], bvh_max(enter.x, enter.y));
-    return node->child[1u - later];
+    uint x = node->child[0], y = node->child[1];
+    if (enter.y < enter.x) {
+      LANES_PREFETCH(nodes + (x & CDL_BVH_INDEX));
+      bvh_put(stack, (*top)++, x, enter.x);
+      return y;
+    }
+    LANES_PREFETCH(nodes + (y & CDL_BVH_INDEX));
+    bvh_put(stack, (*top)++, y, enter.y);
+    return x;
   }
   if (enter.x <= leave.x) return node->child[0];
   return enter.y <= leave.y ? node->child[1] : CDL_NONE;
