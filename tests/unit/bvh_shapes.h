@@ -168,6 +168,23 @@ static inline vec3 shape_edge_point(const Shape *shape, Random *random) {
   return v3(a[0] + s * (b[0] - a[0]), a[1] + s * (b[1] - a[1]), a[2] + s * (b[2] - a[2]));
 }
 
+/* A rotation, scaled unevenly and possibly mirrored, moved by up to three units. */
+static inline void random_matrix(Random *random, float m[12]) {
+  float q[4], n = 0.0f, scale[3];
+  for (int i = 0; i < 4; i++) q[i] = random_signed(random);
+  for (int i = 0; i < 4; i++) n += q[i] * q[i];
+  float w = q[0], x = q[1], y = q[2], z = q[3], s = 2.0f / n;
+  float r[9] = {1 - s * (y * y + z * z), s * (x * y - w * z),     s * (x * z + w * y),
+                s * (x * y + w * z),     1 - s * (x * x + z * z), s * (y * z - w * x),
+                s * (x * z - w * y),     s * (y * z + w * x),     1 - s * (x * x + y * y)};
+  for (int i = 0; i < 3; i++) {
+    scale[i] = 0.3f + fabsf(random_signed(random));
+    if (random_signed(random) < 0.0f) scale[i] = -scale[i];
+  }
+  for (int i = 0; i < 9; i++) m[4 * (i / 3) + i % 3] = r[i] * scale[i % 3];
+  for (int i = 0; i < 3; i++) m[4 * i + 3] = 3.0f * random_signed(random);
+}
+
 /* Closed surfaces, and a cube of half side `inside` around `center` that lies within. */
 typedef struct ClosedShape {
   Shape shape;
