@@ -25,7 +25,9 @@
                                                       i##_end = i + CDL_STRIP;                     \
                                                       i < i##_end; i++)
 #else
-#define CDL_FOR_EACH_ITEM(i) for (size_t i = get_global_id(0), i##_end = i + 1; i < i##_end; i++)
+/* No comparison of sizes: it could overflow for all that compilers know, and would stay as a
+ * branch. */
+#define CDL_FOR_EACH_ITEM(i) for (size_t i = get_global_id(0), i##_once = 1; i##_once; i##_once = 0)
 #endif
 
 #endif

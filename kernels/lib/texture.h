@@ -24,7 +24,7 @@ typedef struct TextureCoords {
 /* The same coordinates, see math_after: for another look-up in the same kernel. */
 CDL_INLINE TextureCoords texture_coords_after(float before, TextureCoords uv) {
   uv.u0 = math_after(before, uv.u0);
-  uv.u1 = math_after(before, uv.u1);
+  uv.u1 = math_after(uv.u0, uv.u1);
   return uv;
 }
 
@@ -84,11 +84,17 @@ CDL_INLINE Texel texture_texel(CDL_GLOBAL const cdl_Texture *texture, CDL_GLOBAL
 #endif
 }
 
+/* math_lerp of values that come about alike, see math_after. */
+CDL_INLINE float texture_lerp(float a, float b, float t) {
+  float part = (1.0f - t) * a;
+  return part + t * math_after(part, b);
+}
+
 CDL_INLINE Texel texel_lerp(Texel a, Texel b, float t) {
-  float red = math_lerp(a.r, math_after(a.r, b.r), t);
-  float green = math_lerp(a.g, math_after(a.g, b.g), math_after(red, t));
-  float blue = math_lerp(a.b, math_after(a.b, b.b), math_after(green, t));
-  float alpha = math_lerp(a.a, math_after(a.a, b.a), math_after(blue, t));
+  float red = texture_lerp(a.r, b.r, t);
+  float green = texture_lerp(a.g, b.g, math_after(red, t));
+  float blue = texture_lerp(a.b, b.b, math_after(green, t));
+  float alpha = texture_lerp(a.a, b.a, math_after(blue, t));
   return texel_make(red, green, blue, alpha);
 }
 

@@ -8,9 +8,11 @@
 
 CDL_INLINE vec3 light_vec3(CDL_GLOBAL const float *a) { return v3(a[0], a[1], a[2]); }
 
-/* Density, in solid angle at a point `distance` m away, of choosing this very point of the triangle;
- * `cosine` is that of the angle at the light, either sign. 0 where the light is seen edge on. */
-CDL_INLINE float light_triangle_pdf(CDL_GLOBAL const cdl_Light *light, float distance, float cosine) {
+/* Density, in solid angle at a point `distance` m away, of choosing this very point of the
+ * triangle; `cosine` is that of the angle at the light, either sign. 0 where the light is seen edge
+ * on. */
+CDL_INLINE float light_triangle_pdf(CDL_GLOBAL const cdl_Light *light, float distance,
+                                    float cosine) {
   float projected = light->area * math_abs(cosine);
   float pdf = light->select_pdf * distance * distance / projected;
   return projected > 0.0f && pdf < CDL_INFINITY ? pdf : 0.0f;
@@ -25,6 +27,10 @@ CDL_INLINE LightSample light_triangle_sample(CDL_GLOBAL const cdl_Light *light, 
   vec3 to_light = v3_sub(point, position);
   float distance = v3_length(to_light);
   vec3 direction = v3_normalize(to_light);
+  /* Not to be normalised side by side with the direction, see math_after. */
+  e1.x = math_after(direction.z, e1.x);
+  e1.y = math_after(e1.x, e1.y);
+  e1.z = math_after(e1.y, e1.z);
   float outward = v3_dot(direction, v3_normalize(v3_cross(e1, e2)));
   float cosine = light->flags & CDL_LIGHT_MIRRORED ? outward : -outward;
   float pdf = light_triangle_pdf(light, distance, cosine);
