@@ -6,7 +6,8 @@
 #include "bvh/traverse.h"
 #include "lib/passable.h"
 
-__kernel void camera_medium(CDL_CONSTANT cdl_Params *params, CDL_GLOBAL const BvhNode *bvh_nodes,
+__kernel void camera_medium(CDL_CONSTANT cdl_Params *restrict params,
+                            CDL_GLOBAL const BvhNode *bvh_nodes,
                             CDL_GLOBAL const BvhTriangle *bvh_triangles,
                             CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                             CDL_GLOBAL const cdl_Triangle *triangles,
@@ -30,7 +31,9 @@ __kernel void camera_medium(CDL_CONSTANT cdl_Params *params, CDL_GLOBAL const Bv
     last = hit;
     CDL_GLOBAL const cdl_Material *material =
         materials + shapes[triangles[hit.primitive].shape].material;
-    if (material->model == CDL_MODEL_INTERFACE || material->model == CDL_MODEL_DIELECTRIC)
+    /* Opaque surfaces are often open; they count as closed only if they say what they hold. */
+    if (material->model == CDL_MODEL_INTERFACE || material->model == CDL_MODEL_DIELECTRIC ||
+        material->medium != CDL_MEDIUM_VACUUM)
       stack = hit_crossed(hit, stack, direction, material->medium, bvh_instances, triangles, shapes,
                           attributes);
   }

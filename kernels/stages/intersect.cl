@@ -7,7 +7,8 @@
 #include "bvh/traverse.h"
 #include "lib/state.h"
 
-/* The queue of the material that was hit. A path that `ends` here can only see what is emitted. */
+/* The queue of the material that was hit. A path that `ends` here can only see what is emitted,
+ * there or, where the material has holes, behind them. */
 CDL_INLINE uint hit_queue(Hit hit, int ends, CDL_GLOBAL const cdl_Triangle *triangles,
                           CDL_GLOBAL const cdl_Shape *shapes,
                           CDL_GLOBAL const cdl_Material *materials) {
@@ -16,12 +17,13 @@ CDL_INLINE uint hit_queue(Hit hit, int ends, CDL_GLOBAL const cdl_Triangle *tria
       materials + shapes[triangles[hit.primitive].shape].material;
   if (material->model == CDL_MODEL_INTERFACE) return CDL_QUEUE_PASS;
   uint emissive = material->flags & CDL_MATERIAL_EMISSIVE ? 1u : 0u;
-  if (ends && !emissive && material->model != CDL_MODEL_UNLIT) return CDL_QUEUE_ENDED;
+  uint holes = material->flags & (CDL_MATERIAL_MASK | CDL_MATERIAL_BLEND);
+  if (ends && !emissive && !holes && material->model != CDL_MODEL_UNLIT) return CDL_QUEUE_ENDED;
   return CDL_QUEUE_MODELS + 2u * material->model + emissive;
 }
 
 __kernel void
-intersect(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+intersect(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
           CDL_GLOBAL const BvhNode *bvh_nodes, CDL_GLOBAL const BvhTriangle *bvh_triangles,
           CDL_GLOBAL const cdl_BvhInstance *bvh_instances, CDL_GLOBAL const cdl_Triangle *triangles,
           CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const cdl_Material *materials,

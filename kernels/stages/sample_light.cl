@@ -7,25 +7,29 @@
 #include "light/environment.h"
 #include "light/punctual.h"
 
-/* What an emissive triangle emits at these barycentrics. */
+/* What an emissive triangle emits at these barycentrics; holes emit nothing. */
 CDL_INLINE vec3 triangle_radiance(CDL_GLOBAL const cdl_Light *light, float b1, float b2,
                                   CDL_GLOBAL const cdl_Triangle *triangles,
                                   CDL_GLOBAL const cdl_Shape *shapes,
                                   CDL_GLOBAL const float *attributes,
                                   CDL_GLOBAL const cdl_Material *materials, CDL_TEXTURE_ARGS) {
-#ifdef CDL_EMISSION_TEXTURES
+#if defined(CDL_EMISSION_TEXTURES) || defined(CDL_PASSABLE)
   int is_triangle = light->type == CDL_LIGHT_TRIANGLE;
   CDL_GLOBAL const cdl_Triangle *triangle = triangles + (is_triangle ? light->triangle : 0u);
   CDL_GLOBAL const cdl_Material *material = materials + (is_triangle ? light->material : 0u);
-  TextureCoords uv = shape_texture_coords(shapes + triangle->shape, attributes, triangle, b1, b2);
-  return material_emission(material, uv, textures, texels, srgb);
+  CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
+  TextureCoords uv = shape_texture_coords(shape, attributes, triangle, b1, b2);
+  vec3 radiance = material_emission(material, uv, textures, texels, srgb);
+  Texel base =
+      material_base(material, shape, attributes, triangle, b1, b2, uv, textures, texels, srgb);
+  return v3_scale(radiance, material_opacity(material, base.a));
 #else
   return light_vec3(light->radiance);
 #endif
 }
 
 __kernel void
-sample_light(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+sample_light(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
              CDL_GLOBAL const cdl_Light *lights, CDL_GLOBAL const cdl_AliasEntry *light_table,
              CDL_GLOBAL const float *environment,
              CDL_GLOBAL const cdl_AliasEntry *environment_cells,
