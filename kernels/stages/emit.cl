@@ -7,7 +7,8 @@
 #include "lib/state.h"
 #include "light/triangle.h"
 
-__kernel void emit(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
+__kernel void emit(CDL_CONSTANT cdl_Wave *restrict wave,
+                   CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                    CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
                    CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                    CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,

@@ -4,7 +4,7 @@
 #include "lib/state.h"
 #include "light/environment.h"
 
-__kernel void escape(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+__kernel void escape(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
                      CDL_GLOBAL const float *environment,
                      CDL_GLOBAL const cdl_AliasEntry *environment_cells,
                      CDL_GLOBAL const uint *path, CDL_GLOBAL uint *slots) {

@@ -11,9 +11,9 @@
 
 CDL_INLINE int is_finite(uint bits) { return (bits & 0x7f800000u) != 0x7f800000u; }
 
-__kernel void film(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_FilmChannel *film_channels,
-                   CDL_GLOBAL const uint *slots, CDL_GLOBAL uint *sums,
-                   CDL_GLOBAL uint *bad_samples) {
+__kernel void film(CDL_CONSTANT cdl_Wave *restrict wave,
+                   CDL_GLOBAL const cdl_FilmChannel *film_channels, CDL_GLOBAL const uint *slots,
+                   CDL_GLOBAL uint *sums, CDL_GLOBAL uint *bad_samples) {
   uint pixels = wave->width * wave->height;
   uint channels = wave->channels;
   uint blocks = (wave->sample_count + CDL_BLOCK_SAMPLES - 1u) / CDL_BLOCK_SAMPLES;

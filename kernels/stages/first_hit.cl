@@ -6,14 +6,13 @@
 #include "lib/material.h"
 #include "lib/state.h"
 
-__kernel void first_hit(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                        CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
-                        CDL_GLOBAL const cdl_Triangle *triangles,
-                        CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
-                        CDL_GLOBAL const cdl_Material *materials,
-                        CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
-                        CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path,
-                        CDL_GLOBAL const uint *work, CDL_GLOBAL uint *slots) {
+__kernel void
+first_hit(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
+          CDL_GLOBAL const cdl_BvhInstance *bvh_instances, CDL_GLOBAL const cdl_Triangle *triangles,
+          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
+          CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL const cdl_Texture *textures,
+          CDL_GLOBAL const uint *texels, CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path,
+          CDL_GLOBAL const uint *work, CDL_GLOBAL uint *slots) {
   size_t i = get_global_id(0);
   size_t stride = wave->stride;
   uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);

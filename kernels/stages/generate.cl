@@ -6,8 +6,9 @@
 #include "lib/dimensions.h"
 #include "lib/state.h"
 
-__kernel void generate(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                       CDL_GLOBAL const uint *camera_media, CDL_GLOBAL uint *path,
+__kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
+                       CDL_CONSTANT cdl_Wave *restrict wave,
+                       CDL_GLOBAL const uint *restrict camera_media, CDL_GLOBAL uint *path,
                        CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
   CDL_FOR_EACH_ITEM(i) {
     size_t stride = wave->stride;

@@ -17,8 +17,8 @@ CDL_INLINE vec3 medium_transmittance(CDL_GLOBAL const cdl_Medium *medium, float 
 }
 #endif
 
-__kernel void occlude(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                      CDL_GLOBAL const BvhNode *bvh_nodes,
+__kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
+                      CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const BvhNode *bvh_nodes,
                       CDL_GLOBAL const BvhTriangle *bvh_triangles,
                       CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                       CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,

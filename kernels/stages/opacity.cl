@@ -5,7 +5,8 @@
 #include "lib/material.h"
 #include "lib/state.h"
 
-__kernel void opacity(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+__kernel void opacity(CDL_CONSTANT cdl_Params *restrict params,
+                      CDL_CONSTANT cdl_Wave *restrict wave,
                       CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
                       CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                       CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,

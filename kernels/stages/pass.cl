@@ -6,7 +6,7 @@
 #include "lib/state.h"
 #include "media/stack.h"
 
-__kernel void pass(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+__kernel void pass(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
                    CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
                    CDL_GLOBAL uint *work) {
   CDL_FOR_EACH_ITEM(i) {

@@ -5,7 +5,7 @@
 #include "abi/params.h"
 #include "lib/state.h"
 
-__kernel void queue_move(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const uint *sources,
+__kernel void queue_move(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const uint *sources,
                          CDL_GLOBAL const uint *path_from, CDL_GLOBAL uint *path,
                          CDL_GLOBAL uint *work) {
   CDL_FOR_EACH_ITEM(i) {

@@ -5,7 +5,7 @@
 #include "abi/params.h"
 #include "lib/state.h"
 
-__kernel void queue_scan(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL uint *counts,
+__kernel void queue_scan(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL uint *counts,
                          CDL_GLOBAL cdl_QueueRange *ranges, CDL_GLOBAL uint *sources) {
   if (get_global_id(0) != 0) return;
   uint chunks = (wave->live + CDL_QUEUE_CHUNK - 1u) / CDL_QUEUE_CHUNK;

@@ -5,7 +5,7 @@
 #include "abi/params.h"
 #include "lib/state.h"
 
-__kernel void queue_scatter(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const uint *work,
+__kernel void queue_scatter(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const uint *work,
                             CDL_GLOBAL const uint *counts, CDL_GLOBAL uint *sources) {
   uint chunk = (uint)get_global_id(0);
   uint live = wave->live;

@@ -7,7 +7,8 @@
 #include "media/homogeneous.h"
 #include "media/stack.h"
 
-__kernel void sample_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+__kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
+                            CDL_CONSTANT cdl_Wave *restrict wave,
                             CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
                             CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
   CDL_FOR_EACH_ITEM(i) {

@@ -8,9 +8,9 @@
 #include "media/phase.h"
 #include "media/stack.h"
 
-__kernel void shade_medium(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
-                           CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
-                           CDL_GLOBAL uint *work) {
+__kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
+                           CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_Medium *media,
+                           CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
   CDL_FOR_EACH_ITEM(i) {
     size_t stride = wave->stride;
     MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),

@@ -27,7 +27,8 @@ CDL_INLINE BsdfParams load_params(CDL_GLOBAL const uint *work, size_t stride, si
   return p;
 }
 
-__kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+__kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
+                              CDL_CONSTANT cdl_Wave *restrict wave,
                               CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
                               CDL_GLOBAL uint *work) {
   CDL_FOR_EACH_ITEM(i) {

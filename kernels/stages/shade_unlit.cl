@@ -4,7 +4,7 @@
 #include "abi/params.h"
 #include "lib/state.h"
 
-__kernel void shade_unlit(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const uint *path,
+__kernel void shade_unlit(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const uint *path,
                           CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
   CDL_FOR_EACH_ITEM(i) {
     size_t stride = wave->stride;

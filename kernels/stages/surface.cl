@@ -20,7 +20,8 @@ CDL_INLINE vec3 mapped_normal(SurfacePoint point, CDL_GLOBAL const cdl_Material 
   return v3_select(present, v3_normalize(bent), point.normal);
 }
 
-__kernel void surface(CDL_CONSTANT cdl_Wave *wave, CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
+__kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
+                      CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                       CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
                       CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                       CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
