@@ -28,6 +28,23 @@ CDL_INLINE uint rng_pixel_key(uint x, uint y, uint seed) {
 /* Top 24 bits as a float in [0, 1) */
 CDL_INLINE float rng_to_unit(uint bits) { return (float)(bits >> 8) * 5.96046448e-8f; }
 
+/* Exchanges the bits of x under `mask` with those `shift` above them. */
+CDL_INLINE uint rng_swap_bits(uint x, uint mask, uint shift) {
+  uint change = (x ^ (x >> shift)) & mask;
+  return x ^ change ^ (change << shift);
+}
+
+#ifdef __SPIR__
+/* Compilers recognise the way below and make one instruction of it, which is lost on the way
+ * through SPIR; this one they do not. */
+CDL_INLINE uint rng_reverse_bits(uint x) {
+  x = rng_swap_bits(x, 0x55555555u, 1);
+  x = rng_swap_bits(x, 0x33333333u, 2);
+  x = rng_swap_bits(x, 0x0f0f0f0fu, 4);
+  x = rng_swap_bits(x, 0x00ff00ffu, 8);
+  return rng_swap_bits(x, 0x0000ffffu, 16);
+}
+#else
 CDL_INLINE uint rng_reverse_bits(uint x) {
   x = ((x >> 1) & 0x55555555u) | ((x & 0x55555555u) << 1);
   x = ((x >> 2) & 0x33333333u) | ((x & 0x33333333u) << 2);
@@ -35,6 +52,7 @@ CDL_INLINE uint rng_reverse_bits(uint x) {
   x = ((x >> 8) & 0x00ff00ffu) | ((x & 0x00ff00ffu) << 8);
   return (x >> 16) | (x << 16);
 }
+#endif
 
 /* A permutation in which each bit is flipped by a hash of the bits below it only: an Owen scramble
  * of a value whose bits are reversed (Laine and Karras 2011, with Vegdahl's constants). */

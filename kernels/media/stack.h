@@ -1,8 +1,9 @@
 /* stack.h: which media a path is inside of.
  *
- * A list of up to four media, innermost first, 16 bits each: index + 1; 0 ends it. Entering puts one in
- * front (a fifth pushes the outermost out), leaving takes the innermost of that medium out, wherever it
- * is in the list: so overlapping media work, and leaving what was never entered changes nothing. */
+ * A list of up to four media, innermost first, 16 bits each: index + 1; 0 ends it. Entering puts
+ * one in front (a fifth pushes the outermost out), leaving takes the innermost of that medium out,
+ * wherever it is in the list: so overlapping media work, and leaving what was never entered changes
+ * nothing. */
 #ifndef CDL_MEDIA_STACK_H
 #define CDL_MEDIA_STACK_H
 
@@ -31,11 +32,9 @@ CDL_INLINE uint media_current(MediaStack stack, uint outside) {
   return entry ? entry - 1u : outside;
 }
 
-CDL_INLINE MediaStack media_entered(MediaStack stack, uint medium) {
-  return media_make((stack.inner << 16) | (medium + 1u), (stack.outer << 16) | (stack.inner >> 16));
-}
-
-CDL_INLINE MediaStack media_left(MediaStack stack, uint medium) {
+/* Crossing a surface: in through its front, or out through its back. Entry by entry, because whole
+ * words would be rotated, which is lost on the way through SPIR. */
+CDL_INLINE MediaStack media_crossed(MediaStack stack, uint medium, int entering) {
   uint entry = medium + 1u;
   uint e0 = stack.inner & 0xffffu;
   uint e1 = stack.inner >> 16;
@@ -45,18 +44,11 @@ CDL_INLINE MediaStack media_left(MediaStack stack, uint medium) {
   int in1 = in0 | (e1 == entry);
   int in2 = in1 | (e2 == entry);
   int in3 = in2 | (e3 == entry);
-  uint n0 = in0 ? e1 : e0;
-  uint n1 = in1 ? e2 : e1;
-  uint n2 = in2 ? e3 : e2;
-  uint n3 = in3 ? 0u : e3;
+  uint n0 = entering ? entry : in0 ? e1 : e0;
+  uint n1 = entering ? e0 : in1 ? e2 : e1;
+  uint n2 = entering ? e1 : in2 ? e3 : e2;
+  uint n3 = entering ? e2 : in3 ? 0u : e3;
   return media_make(n0 | (n1 << 16), n2 | (n3 << 16));
-}
-
-/* Crossing a surface: in through its front, or out through its back. */
-CDL_INLINE MediaStack media_crossed(MediaStack stack, uint medium, int entering) {
-  MediaStack in = media_entered(stack, medium);
-  MediaStack out = media_left(stack, medium);
-  return media_make(entering ? in.inner : out.inner, entering ? in.outer : out.outer);
 }
 
 #endif
