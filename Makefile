@@ -129,7 +129,6 @@ run-unit: $(UNIT_PROGRAMS)
 
 BENCH_SOURCES := $(wildcard scripts/bench_*.c scripts/bench_*.cpp)
 BENCH_PROGRAMS := $(patsubst scripts/%,$(B)/bench/%,$(basename $(BENCH_SOURCES)))
-BENCH_SCRIPTS := $(wildcard scripts/bench_*.sh)
 
 $(BENCH_PROGRAMS): $(B)/bench/%: $$(patsubst $$(percent),$(B)/obj/$$(percent).o,$$(wildcard scripts/$$*.c scripts/$$*.cpp)) \
   $(B)/libcandela.a
@@ -138,8 +137,8 @@ $(BENCH_PROGRAMS): $(B)/bench/%: $$(patsubst $$(percent),$(B)/obj/$$(percent).o,
 percent := %
 
 run-bench: all $(BENCH_PROGRAMS)
-	@set -e; for b in $(BENCH_PROGRAMS) $(BENCH_SCRIPTS); do \
-	  echo "== $$b"; CANDELA=$(B)/candela $$b; done
+	@set -e; for b in $(BENCH_PROGRAMS); do echo "# $${b##*/}"; $$b; done
+	@CANDELA=$(B)/candela scripts/bench.sh
 
 # --- Checks: format, static analysis, and the host's tests under the sanitizers.
 
