@@ -13,6 +13,8 @@ __kernel void queue_move(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const 
     uint source = sources[i];
     int pad = (source & CDL_SOURCE_PAD) != 0u;
     size_t from = pad ? 0u : source;
+/* else this loop is vectorised instead of the one over paths */
+#pragma unroll
     for (uint field = 0; field < CDL_PATH_FIELDS; field++)
       path[field * stride + i] = path_from[field * stride + from];
     uint slot = path[CDL_PATH_SLOT * stride + i];
