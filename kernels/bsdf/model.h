@@ -1,5 +1,6 @@
 /* model.h: the one model that a shading kernel is built for, under names that do not say which.
- * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross it. */
+ * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross
+ * it. */
 #ifndef CDL_BSDF_MODEL_H
 #define CDL_BSDF_MODEL_H
 

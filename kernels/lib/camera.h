@@ -21,9 +21,9 @@ CDL_INLINE Transform transform_of_camera(CDL_CONSTANT cdl_CameraParams *camera) 
   return t;
 }
 
-/* A point on the lens in camera space: round, or a regular polygon of `blades` sides with a corner at
- * the top, uniform by area. A polygon is a fan of triangles; a point is chosen in one about its own
- * axis and turned. */
+/* A point on the lens in camera space: round, or a regular polygon of `blades` sides with a corner
+ * at the top, uniform by area. A polygon is a fan of triangles; a point is chosen in one about its
+ * own axis and turned. */
 CDL_INLINE vec3 camera_lens_point(CDL_CONSTANT cdl_CameraParams *camera, float u, float v) {
   float disk_x, disk_y;
   sample_disk(u, v, &disk_x, &disk_y);

@@ -1,7 +1,7 @@
 /* dimensions.h: which random numbers belong to which decision of a path.
  *
- * Numbers come in pairs, two dimensions of one Sobol net each. The camera takes the first pairs, every
- * vertex (passed surfaces included) the next ones. */
+ * Numbers come in pairs, two dimensions of one Sobol net each. The camera takes the first pairs,
+ * every vertex (passed surfaces included) the next ones. */
 #ifndef CDL_DIMENSIONS_H
 #define CDL_DIMENSIONS_H
 
@@ -12,12 +12,12 @@
 #define CDL_PAIR_LENS 1u
 #define CDL_PAIR_FIRST_VERTEX 2u
 
-#define CDL_PAIR_DIRECTION 0u  /* the scattered direction */
-#define CDL_PAIR_LOBE 1u       /* which lobe; Russian roulette */
-#define CDL_PAIR_LIGHT 2u      /* the point on the light */
-#define CDL_PAIR_SELECT 3u     /* which light; opacity */
+#define CDL_PAIR_DIRECTION 0u   /* the scattered direction */
+#define CDL_PAIR_LOBE 1u        /* which lobe; Russian roulette */
+#define CDL_PAIR_LIGHT 2u       /* the point on the light */
+#define CDL_PAIR_SELECT 3u      /* which light; opacity */
 #define CDL_PAIR_FREE_FLIGHT 4u /* which channel's extinction; the distance */
-#define CDL_PAIR_TEXEL 5u /* the point within a cell of the environment */
+#define CDL_PAIR_TEXEL 5u       /* the point within a cell of the environment */
 #define CDL_PAIRS_PER_VERTEX 6u
 
 /* Who draws: the pixel's key and the number of the sample. */
@@ -46,8 +46,8 @@ CDL_INLINE PathRandom path_random(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT 
 
 /* The pair `which` (CDL_PAIR_*) of the path's current vertex. */
 CDL_INLINE void vertex_random(PathRandom random, uint vertex, uint which, float *u, float *v) {
-  rng_2d(random.key, random.sample, CDL_PAIR_FIRST_VERTEX + vertex * CDL_PAIRS_PER_VERTEX + which, u,
-         v);
+  rng_2d(random.key, random.sample, CDL_PAIR_FIRST_VERTEX + vertex * CDL_PAIRS_PER_VERTEX + which,
+         u, v);
 }
 
 #endif

@@ -62,7 +62,8 @@ CDL_INLINE Texel material_base(CDL_GLOBAL const cdl_Material *material,
                                CDL_GLOBAL const float *attributes,
                                CDL_GLOBAL const cdl_Triangle *triangle, float u, float v,
                                TextureCoords uv, CDL_TEXTURE_ARGS) {
-  Texel base = texel_make(material->base[0], material->base[1], material->base[2], material->base[3]);
+  Texel base =
+      texel_make(material->base[0], material->base[1], material->base[2], material->base[3]);
 #ifdef CDL_TEXTURES
   Texel texel = texture_lookup(&material->base_texture, textures, texels, srgb, uv, 1);
   base = texel_make(base.r * texel.r, base.g * texel.g, base.b * texel.b, base.a * texel.a);

@@ -1,5 +1,5 @@
-/* passable.h: surfaces that light goes straight through: boundaries of media, holes, half transparent
- * surfaces. Used where a whole segment is followed at once. */
+/* passable.h: surfaces that light goes straight through: boundaries of media, holes, half
+ * transparent surfaces. Used where a whole segment is followed at once. */
 #ifndef CDL_PASSABLE_H
 #define CDL_PASSABLE_H
 

@@ -1,5 +1,5 @@
-/* roulette.h: Russian roulette (Arvo and Kirk 1990): paths that carry little are ended by chance, and
- * those that go on carry what the ended ones lost. */
+/* roulette.h: Russian roulette (Arvo and Kirk 1990): paths that carry little are ended by chance,
+ * and those that go on carry what the ended ones lost. */
 #ifndef CDL_ROULETTE_H
 #define CDL_ROULETTE_H
 
@@ -10,7 +10,8 @@
 #define CDL_ROULETTE_MOST 0.95f /* the highest chance to go on, so that every path ends */
 
 /* The throughput after the `depth`-th event; black where the path ends. */
-CDL_INLINE vec3 roulette(CDL_CONSTANT cdl_Params *params, uint depth, vec3 throughput, float chance) {
+CDL_INLINE vec3 roulette(CDL_CONSTANT cdl_Params *params, uint depth, vec3 throughput,
+                         float chance) {
   float survival = math_min(v3_max(throughput), CDL_ROULETTE_MOST);
   int plays = depth >= params->roulette_depth;
   int survives = (chance < survival) | !plays;

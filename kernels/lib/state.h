@@ -1,7 +1,7 @@
 /* state.h: reading and writing the path state; see abi/path_fields.h for the fields.
  *
- * Indices are size_t: with 32 bits the compiler would have to allow for wrap-around and could not see
- * that neighbouring work-items touch neighbouring words. */
+ * Indices are size_t: with 32 bits the compiler would have to allow for wrap-around and could not
+ * see that neighbouring work-items touch neighbouring words. */
 #ifndef CDL_STATE_H
 #define CDL_STATE_H
 
@@ -39,7 +39,8 @@ CDL_INLINE void state_set_vec3(CDL_GLOBAL uint *state, uint field, size_t stride
 }
 
 /* Adds to a slot's radiance. No two paths share a slot, so there is no race. */
-CDL_INLINE void state_add_radiance(CDL_GLOBAL uint *slots, size_t stride, uint slot, vec3 radiance) {
+CDL_INLINE void state_add_radiance(CDL_GLOBAL uint *slots, size_t stride, uint slot,
+                                   vec3 radiance) {
   vec3 sum = state_vec3(slots, CDL_SLOT_RADIANCE, stride, slot);
   state_set_vec3(slots, CDL_SLOT_RADIANCE, stride, slot, v3_add(sum, radiance));
 }

@@ -10,9 +10,9 @@
 
 typedef struct SurfacePoint {
   vec3 position;
-  vec3 geometric; /* unit; of the front side */
-  vec3 normal;    /* unit; interpolated, of the front side */
-  vec3 tangent;   /* of any length, not yet orthogonal; zero where the shape has none */
+  vec3 geometric;   /* unit; of the front side */
+  vec3 normal;      /* unit; interpolated, of the front side */
+  vec3 tangent;     /* of any length, not yet orthogonal; zero where the shape has none */
   float handedness; /* bitangent = handedness x (normal x tangent) */
 } SurfacePoint;
 

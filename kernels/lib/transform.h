@@ -26,8 +26,8 @@ CDL_INLINE vec3 transform_point(Transform t, vec3 p) {
   return v3_add(transform_direction(t, p), t.move);
 }
 
-/* Multiplies by the transpose of the linear part: with a matrix from world to object space this takes
- * normals from object to world space, not of unit length. */
+/* Multiplies by the transpose of the linear part: with a matrix from world to object space this
+ * takes normals from object to world space, not of unit length. */
 CDL_INLINE vec3 transform_transposed(Transform t, vec3 n) {
   return v3_madd(v3_madd(v3_scale(t.x, n.x), n.y, t.y), n.z, t.z);
 }

@@ -1,8 +1,8 @@
 /* vec.h: three-vectors for host and kernels.
  *
- * vec3 carries two pads, always zero: structs of at most 16 bytes are packed into vector registers by
- * x86's calling convention, and one vector value in a kernel stops PoCL's loop vectoriser. A larger
- * struct passed to always-inline functions dissolves into scalars. */
+ * vec3 carries two pads, always zero: structs of at most 16 bytes are packed into vector registers
+ * by x86's calling convention, and one vector value in a kernel stops PoCL's loop vectoriser. A
+ * larger struct passed to always-inline functions dissolves into scalars. */
 #ifndef CDL_VEC_H
 #define CDL_VEC_H
 
@@ -41,7 +41,8 @@ CDL_INLINE vec3 v3_madd(vec3 a, float s, vec3 b) {
 
 CDL_INLINE float v3_dot(vec3 a, vec3 b) { return fma(a.x, b.x, fma(a.y, b.y, a.z * b.z)); }
 
-/* ab - cd without catastrophic cancellation (Kahan; error at most 1.5 ulp, Jeannerod et al. 2013). */
+/* ab - cd without catastrophic cancellation (Kahan; error at most 1.5 ulp, Jeannerod et al. 2013).
+ */
 CDL_INLINE float difference_of_products(float a, float b, float c, float d) {
   float cd = c * d;
   float error = fma(-c, d, cd);
