@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Environment maps: where each texel stands in the sky, blending, rotation, strength, mending, and the
-light that they give, against the formulas of SCENES written down a second time here.
+"""Environment maps: where each texel stands in the sky, blending, rotation, strength, mending,
+and the light that they give, against the formulas of SCENES written down a second time here.
 
-Pictures of the sky are compared pixel by pixel (its map is smooth enough for 8 x 8 points a pixel to
-stand for it, to 0.02), light on a plane to 0.3 % with three standard errors below that."""
+Pictures of the sky are compared pixel by pixel (its map is smooth enough for 8 x 8 points a
+pixel to stand for it, to 0.02), light on a plane to 0.3 % with three standard errors below that."""
 import numpy as np
 
 from support.images import exr_bytes
@@ -60,7 +60,8 @@ def sky(**environment):
 
 
 def test_named_directions():
-    """One texel that shines, at each place that SCENES names, seen along an axis from the origin."""
+    """One texel that shines, at each place that SCENES names, seen along an axis from the
+    origin."""
     places = {"+X": (3, WIDTH // 2), "+Z": (3, 3 * WIDTH // 4), "-Z": (3, WIDTH // 4), "-X": (3, 0),
               "+Y": (0, slice(None)), "-Y": (HEIGHT - 1, slice(None))}
     image = np.zeros((HEIGHT, WIDTH, 3))
@@ -99,7 +100,8 @@ def irradiance(image, normal, rotation=0.0):
     directions = np.stack([np.outer(ring, np.cos(phi)), np.repeat(cosine[:, None], 2048, 1),
                            np.outer(ring, np.sin(phi))], -1)
     lit = np.maximum(directions @ np.asarray(normal, float), 0)
-    return np.sum(lookup(image, directions, rotation) * lit[..., None], (0, 1)) * 4 * np.pi / lit.size
+    total = np.sum(lookup(image, directions, rotation) * lit[..., None], (0, 1))
+    return total * 4 * np.pi / lit.size
 
 
 def test_light_of_the_sky():
@@ -122,7 +124,8 @@ def test_light_of_the_sky():
 
 
 def test_broken_texels():
-    """Negative and not-a-number count as 0, infinite as the largest finite value; a note says how many."""
+    """Negative and not-a-number count as 0, infinite as the largest finite value; a note says
+    how many."""
     image = np.ones((4, 8, 3))
     image[1:3, 3:5] = -5, np.nan, 2
     image[1:3, 1:3] = np.inf, 3, 1
@@ -137,7 +140,8 @@ def test_broken_texels():
 
 
 def test_options():
-    """--env, --env-strength and --background take the scene's place; without a light there is a sky."""
+    """--env, --env-strength and --background take the scene's place; without a light there is a
+    sky."""
     s, camera = sky(radiance=(9, 9, 9)), look_at((0, 0, 0), (1, 0.2, 0.3))
     s.camera(camera, yfov=60)
     path = scratch(".exr")
@@ -162,4 +166,5 @@ def test_options():
 
 
 if __name__ == "__main__":
-    main(test_named_directions, test_whole_sky, test_light_of_the_sky, test_broken_texels, test_options)
+    main(test_named_directions, test_whole_sky, test_light_of_the_sky, test_broken_texels,
+         test_options)

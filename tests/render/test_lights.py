@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
-"""Every kind of light over a plane, against closed forms: Lambert's formula for polygons, inverse squares,
-the formulas of KHR_lights_punctual.
+"""Every kind of light over a plane, against closed forms: Lambert's formula for polygons,
+inverse squares, the formulas of KHR_lights_punctual.
 
-A camera without perspective looks straight down from below the lights, so each pixel shows one known
-square of the plane. Power: three standard errors of a picture's mean are below 0.3 % (agrees() asks
-for it), and blocks of 8 x 8 pixels show where an error that cancels in the mean would be."""
+A camera without perspective looks straight down from below the lights, so each pixel shows one
+known square of the plane. Power: three standard errors of a picture's mean are below 0.3 %
+(agrees() asks for it), and blocks of 8 x 8 pixels show where an error that cancels in the mean
+would be."""
 import numpy as np
 
 from support.optics import polygon_irradiance
@@ -145,7 +146,8 @@ def test_all_lights():
     def irradiance(p):
         radiance = np.repeat((2.0, 9.0), (2, len(lamps) - 2))
         # Each lamp hides the sky that it covers.
-        polygon = sum((r - 0.1) * polygon_irradiance(p, up(p), lamps[radiance == r]) for r in (2, 9))
+        polygon = sum((r - 0.1) * polygon_irradiance(p, up(p), lamps[radiance == r])
+                      for r in (2, 9))
         sun = 0.5 * 1.5 / np.hypot(2.6, 1.5)
         return polygon + point_irradiance(p, (0.5, 0.9, 0.5), 1)[0] + sun + 0.1 * np.pi
     compare("all lights together", s, irradiance, 1024, 0.006)
@@ -168,7 +170,8 @@ def test_textured_emission():
 
 
 def test_mirrored_and_instanced_lamps():
-    """A lamp placed twice, once mirrored and sheared by its parent's scale: its front stays its front."""
+    """A lamp placed twice, once mirrored and sheared by its parent's scale: its front stays its
+    front."""
     s = plane()
     lamp = quad((0, 0, 0), (0.3, 0, 0), (0, 0, 0.2))
     lamp["positions"][0, 0] -= 0.2  # without symmetry
@@ -190,7 +193,8 @@ def test_mirrored_and_instanced_lamps():
 
 
 def test_sides_of_emission():
-    """A triangle emits from its front, a double-sided material from both sides, directly and as a light."""
+    """A triangle emits from its front, a double-sided material from both sides, directly and as
+    a light."""
     for name, double, turned, shines in (("front", False, False, 1), ("back", False, True, 0),
                                          ("back, double-sided", True, True, 1)):
         s = plane()

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 """What counts as an event on a path, and surfaces that a path may go straight through.
 
-Closed rooms in which every point is alike have a closed form at every depth, and holes in an opaque sheet
-dim a plane by their share alone, whether a path, a shadow ray or a light sample meets them. Power: a
-third of 0.3 % to 1 % (as said there) in three standard errors."""
+Closed rooms in which every point is alike have a closed form at every depth, and holes in an
+opaque sheet dim a plane by their share alone, whether a path, a shadow ray or a light sample
+meets them. Power: a third of 0.3 % to 1 % (as said there) in three standard errors."""
 import numpy as np
 
 from support.optics import fresnel_dielectric, polygon_irradiance
@@ -87,8 +87,8 @@ def black(scene, kind, share, unlit=False, **members):
 
 
 def covered(kind, share, plane, unlit=False):
-    """A plane below a black sheet so wide and low that it covers the sky, with stripes that repeat every
-    2 cm; cameras 0 below and 1 above the sheet show 20 of them."""
+    """A plane below a black sheet so wide and low that it covers the sky, with stripes that
+    repeat every 2 cm; cameras 0 below and 1 above the sheet show 20 of them."""
     s = Scene()
     s.use_every_feature()
     s.add(quad((0, 0, 0), (0, 0, 12), (12, 0, 0)), plane(s))

@@ -1,4 +1,5 @@
-"""Closed forms and quadrature in double precision, written from the literature and apart from the kernels."""
+"""Closed forms and quadrature in double precision, written from the literature and apart from
+the kernels."""
 import numpy as np
 
 
@@ -23,9 +24,9 @@ def fresnel_conductor(cosine, eta, k):
 
 
 def polygon_irradiance(points, normals, corners):
-    """Irradiance at points from polygons of radiance 1 seen from their front (Lambert's formula);
-    points and normals: N x 3, corners: polygons x corners x 3, counter-clockwise seen from the front,
-    all above the points' horizons. A polygon that shows its back gives nothing."""
+    """Irradiance at points from polygons of radiance 1 seen from their front (Lambert's
+    formula); points and normals: N x 3, corners: polygons x corners x 3, counter-clockwise seen
+    from the front, all above the points' horizons. A polygon that shows its back gives nothing."""
     total = np.zeros(len(points))
     for polygon in np.asarray(corners, float):
         front = np.cross(polygon[1] - polygon[0], polygon[2] - polygon[0])
@@ -42,8 +43,8 @@ def polygon_irradiance(points, normals, corners):
 
 
 def hemisphere(count=256):
-    """Directions about +Z on a grid of count x 2 count cells of equal projected solid angle, and the
-    weight of each: the sum of f weight is the integral of f cos over the hemisphere."""
+    """Directions about +Z on a grid of count x 2 count cells of equal projected solid angle, and
+    the weight of each: the sum of f weight is the integral of f cos over the hemisphere."""
     u = (np.arange(count) + 0.5) / count
     phi = 2 * np.pi * (np.arange(2 * count) + 0.5) / (2 * count)
     r, z = np.sqrt(u)[:, None], np.sqrt(1 - u)[:, None] + 0 * phi

@@ -63,7 +63,8 @@ def render(scene, size=(32, 32), spp=16, depth=None, seed=None, aov="variance", 
     """Renders a Scene, or a file by its path, to an EXR with the AOVs named."""
     path = scene if isinstance(scene, str) else scene.write(scratch(".gltf"))
     out, stats = scratch(".exr"), scratch(".json")
-    arguments = ["render", path, "-o", out, "--size", "%dx%d" % size, "--spp", spp, "--stats", stats]
+    arguments = ["render", path, "-o", out, "--stats", stats, "--size", "%dx%d" % size,
+                 "--spp", spp]
     for option, value in (("--max-depth", depth), ("--seed", seed), ("--aov", aov)):
         if value is not None:
             arguments += [option, value]

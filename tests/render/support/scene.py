@@ -60,8 +60,8 @@ class Scene:
 
     # --- Materials. Each returns its index.
 
-    def material(self, cdl=None, medium=None, base=None, metallic=None, roughness=None, emission=None,
-                 **members):
+    def material(self, cdl=None, medium=None, base=None, metallic=None, roughness=None,
+                 emission=None, **members):
         """A glTF material; `cdl` and `medium` are the extensions, `members` go in as they are."""
         entry = dict(members)
         pbr = entry.setdefault("pbrMetallicRoughness", {})
@@ -75,7 +75,8 @@ class Scene:
         if emission is not None:
             strength = max(1.0, float(np.max(emission)))
             entry["emissiveFactor"] = rgb(np.asarray(emission) / strength)
-            self._extension(entry, "KHR_materials_emissive_strength", {"emissiveStrength": strength})
+            self._extension(entry, "KHR_materials_emissive_strength",
+                            {"emissiveStrength": strength})
         if cdl:
             self._extension(entry, "CDL_material", cdl)
         if medium:
@@ -176,9 +177,9 @@ class Scene:
         self._extension(self.json["scenes"][0], "CDL_medium", value)
 
     def use_every_feature(self, at=(0, -4, 0)):
-        """Has kernels compiled as they are for a scene that has everything, so that many scenes share
-        one compilation. What is added is a millimetre across, of no power, and out of sight at `at`.
-        It is not far away: the power of a sky grows with the size of the scene."""
+        """Has kernels compiled as they are for a scene that has everything, so that many scenes
+        share one compilation. What is added is a millimetre across, of no power, and out of
+        sight at `at`. It is not far away: the power of a sky grows with the size of the scene."""
         tiny = quad((0, 0, 0), (1e-3, 0, 0), (0, 0, 1e-3))
         white = np.full((1, 1, 4), 255, np.uint8)
         colored = dict(tiny, colors=np.ones((len(tiny["positions"]), 4)))
@@ -187,7 +188,8 @@ class Scene:
         place = move(*at)
         self.add(colored, glow, place)
         self.add(tiny, self.interface({"absorption": [1, 1, 1]}), place @ move(0.01, 0, 0))
-        self.add(tiny, self.material(alphaMode="BLEND", base=(0, 0, 0, 0.5)), place @ move(0.02, 0, 0))
+        leaf = self.material(alphaMode="BLEND", base=(0, 0, 0, 0.5))
+        self.add(tiny, leaf, place @ move(0.02, 0, 0))
         self.light("point", 0, place)
 
     def write(self, path):

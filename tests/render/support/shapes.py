@@ -1,5 +1,5 @@
-"""Geometry for test scenes: dicts with `positions` (N x 3), `indices` (M x 3, counter-clockwise seen from
-the front) and perhaps `normals`, `uv0`, `uv1`, `colors`; and 4 x 4 matrices."""
+"""Geometry for test scenes: dicts with `positions` (N x 3), `indices` (M x 3, counter-clockwise
+seen from the front) and perhaps `normals`, `uv0`, `uv1`, `colors`; and 4 x 4 matrices."""
 import numpy as np
 
 
@@ -35,8 +35,8 @@ def look_at(eye, target, up=(0, 1, 0)):
 
 
 def quad(center, half_u, half_v, columns=1, rows=1):
-    """A rectangle; its front is towards half_u x half_v. uv0 runs from 0 to 1 along half_u and, as in
-    glTF, downwards against half_v."""
+    """A rectangle; its front is towards half_u x half_v. uv0 runs from 0 to 1 along half_u and,
+    as in glTF, downwards against half_v."""
     c, u, v = (np.array(a, float) for a in (center, half_u, half_v))
     s, t = np.meshgrid(np.linspace(0, 1, columns + 1), np.linspace(0, 1, rows + 1))
     s, t = s.ravel(), t.ravel()

@@ -41,10 +41,10 @@ def _short(values):
 
 
 def agrees(what, picture, want, relative=0.003, sigmas=3.0, region=None, power=True):
-    """The mean of a picture (of a `region`: a mask) in every channel against a closed form, a number or
-    an image: within `relative` of it and within `sigmas` standard errors of the picture's own
-    noise. With `power`, three standard errors must be smaller than `relative` as well, or the test
-    could not see what it is for."""
+    """The mean of a picture (of a `region`: a mask) in every channel against a closed form, a
+    number or an image: within `relative` of it and within `sigmas` standard errors of the
+    picture's own noise. With `power`, three standard errors must be smaller than `relative` as
+    well, or the test could not see what it is for."""
     want = np.broadcast_to(np.asarray(want, float), picture.rgb.shape)
     mask = np.ones(picture.rgb.shape[:2], bool) if region is None else region
     count = int(mask.sum())
@@ -74,9 +74,9 @@ def _percent(value, of):
 
 
 def blocks_agree(what, picture, want, relative=0.01, side=8):
-    """A picture against an image, by blocks of side x side pixels: every block within `relative` of it
-    (or of a tenth of the picture's mean) or within the noise, at 1 % over all blocks and channels
-    (Sidak)."""
+    """A picture against an image, by blocks of side x side pixels: every block within `relative`
+    of it (or of a tenth of the picture's mean) or within the noise, at 1 % over all blocks and
+    channels (Sidak)."""
     height, width = (n // side * side for n in picture.rgb.shape[:2])
     want = np.broadcast_to(np.asarray(want, float), picture.rgb.shape)
 
@@ -91,8 +91,8 @@ def blocks_agree(what, picture, want, relative=0.01, side=8):
     excess = np.abs(got - want) / (np.maximum(limit * error, relative * size) + 1e-7)
     excess = np.where(np.isfinite(excess), excess, np.inf)
     bad, worst = excess > 1, np.unravel_index(np.argmax(excess), excess.shape)
-    return check(what, not bad.any(), "%d of %d blocks are off, worst %s: %g instead of %g +- %g" % (
-        bad.sum(), bad.size, worst, got[worst], want[worst], error[worst]))
+    return check(what, not bad.any(), "%d of %d blocks are off, worst %s: %g, not %g +- %g" %
+                 (bad.sum(), bad.size, worst, got[worst], want[worst], error[worst]))
 
 
 def z_limit(alpha, tests):
