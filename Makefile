@@ -159,7 +159,7 @@ run-check: format-check lint
 # --- A picture.
 
 run-demo: all
-	@$(B)/candela render scenes/demo.gltf -o $(B)/demo.png --profile
+	@$(B)/candela render scenes/demo.gltf -o $(B)/demo.png --size 960x --spp 96 --tonemap aces --profile
 	@echo "The picture is in $(B)/demo.png"
 
 # --- Installation.
