@@ -13,9 +13,9 @@ CDL_FIELD(PATH, THROUGHPUT, 3)
 /* Solid-angle density of the direction, 1/sr; 0: it could not have been chosen otherwise (camera,
  * delta lobe), so no light sampling competes with it. */
 CDL_FIELD(PATH, PDF, 1)
-/* m from the last scattering event (or the camera) to the origin, through surfaces that were
- * passed. */
-CDL_FIELD(PATH, TRAVELLED, 1)
+/* Distance along the ray, in m, of the last surface that was passed straight through; 0: none. The
+ * origin stays where it was, and HIT_TRIANGLE and HIT_INSTANCE name that surface until the next hit. */
+CDL_FIELD(PATH, PASSED, 1)
 /* Slot, see cdl_Wave; slots from path_count on are trash cans for padding. */
 CDL_FIELD(PATH, SLOT, 1)
 /* Scattering events so far (low 16 bits) and vertices so far, passed surfaces included (high). */

@@ -46,10 +46,10 @@ CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, 
   float sx = fma(2.0f, x, -1.0f) * camera->scale[0];
   float sy = fma(-2.0f, y, 1.0f) * camera->scale[1];
   vec3 lens = camera_lens_point(camera, u, v);
-  vec3 focus = v3_scale(v3(sx, sy, -1.0f), camera->focus_distance);
+  vec3 focus = v3(sx, sy, -1.0f);
   int ortho = camera->orthographic != 0u;
   vec3 origin = v3_select(ortho, v3(sx, sy, 0.0f), lens);
-  vec3 towards = v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_sub(focus, lens));
+  vec3 towards = v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_madd(focus, -camera->inverse_focus, lens));
   CameraRay ray;
   Transform to_world = transform_of_camera(camera);
   ray.origin = transform_point(to_world, origin);

@@ -15,10 +15,11 @@
 #define CDL_PAIR_DIRECTION 0u   /* the scattered direction */
 #define CDL_PAIR_LOBE 1u        /* which lobe; Russian roulette */
 #define CDL_PAIR_LIGHT 2u       /* the point on the light */
-#define CDL_PAIR_SELECT 3u      /* which light; opacity */
+#define CDL_PAIR_SELECT 3u      /* which light: slot of the table, and slot or alias */
 #define CDL_PAIR_FREE_FLIGHT 4u /* which channel's extinction; the distance */
 #define CDL_PAIR_TEXEL 5u       /* the point within a cell of the environment */
-#define CDL_PAIRS_PER_VERTEX 6u
+#define CDL_PAIR_OPACITY 6u     /* whether a half transparent surface is passed */
+#define CDL_PAIRS_PER_VERTEX 7u
 
 /* Who draws: the pixel's key and the number of the sample. */
 typedef struct PathRandom {
@@ -42,6 +43,12 @@ CDL_INLINE PathRandom path_random(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT 
   random.sample = wave->first_sample + sample;
   random.pad = 0u;
   return random;
+}
+
+/* Bits of the pair `which`, for choosing among many. */
+CDL_INLINE void vertex_random_bits(PathRandom random, uint vertex, uint which, uint *u, uint *v) {
+  rng_2d_bits(random.key, random.sample,
+              CDL_PAIR_FIRST_VERTEX + vertex * CDL_PAIRS_PER_VERTEX + which, u, v);
 }
 
 /* The pair `which` (CDL_PAIR_*) of the path's current vertex. */

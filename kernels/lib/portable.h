@@ -40,6 +40,8 @@ CDL_INLINE uint as_uint(float x) {
   return u;
 }
 
+CDL_INLINE uint mul_hi(uint a, uint b) { return (uint)(((uint64_t)a * b) >> 32); }
+
 CDL_INLINE int as_int(float x) {
   int i;
   memcpy(&i, &x, 4);

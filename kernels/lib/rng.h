@@ -90,14 +90,25 @@ CDL_INLINE uint rng_dimension_seed(uint key, uint dimension) {
 }
 
 /* Two stratified numbers for one sample of a pixel; `pair` numbers the pairs of dimensions. */
-CDL_INLINE void rng_2d(uint key, uint sample, uint pair, float *u, float *v) {
+CDL_INLINE void rng_2d_bits(uint key, uint sample, uint pair, uint *u, uint *v) {
   uint seed = rng_dimension_seed(key, 2u * pair);
   uint index = rng_shuffle_index(sample, seed);
   uint x = rng_scramble_reversed(index, rng_hash(seed + 1u));
   uint y = rng_scramble_reversed(rng_sobol2_reversed(index), rng_hash(seed + 2u));
-  *u = rng_to_unit(rng_reverse_bits(x));
-  *v = rng_to_unit(rng_reverse_bits(y));
+  *u = rng_reverse_bits(x);
+  *v = rng_reverse_bits(y);
 }
+
+/* The same as floats in [0,1). */
+CDL_INLINE void rng_2d(uint key, uint sample, uint pair, float *u, float *v) {
+  uint x, y;
+  rng_2d_bits(key, sample, pair, &x, &y);
+  *u = rng_to_unit(x);
+  *v = rng_to_unit(y);
+}
+
+/* One of `count` alike, from 32 random bits: 24 would favour some where there are many. */
+CDL_INLINE uint rng_pick(uint bits, uint count) { return mul_hi(bits, count); }
 
 /* One stratified number for one sample of a pixel, independent of all pairs of rng_2d. */
 CDL_INLINE float rng_1d(uint key, uint sample, uint dimension) {

@@ -70,26 +70,6 @@ CDL_INLINE void sample_triangle(float u, float v, float *b0, float *b1) {
   *b1 = upper ? rest : half_small;
 }
 
-/* The slot of an alias table of `count` >= 1 entries, and where u lies in it, in [0, 1). A table of
- * 2^k entries leaves 24 - k bits there: give sample_alias a number of its own when k is large. */
-CDL_INLINE uint sample_alias_slot(float u, uint count, float *fraction) {
-  float x = u * (float)count;
-  uint slot = (uint)x;
-  slot = slot < count ? slot : count - 1u;
-  *fraction = math_clamp(x - (float)slot, 0.0f, CDL_ONE_MINUS_EPSILON);
-  return slot;
-}
-
-/* Picks `slot` with probability `keep`, else `alias` (Walker 1977); both come from the table's
- * entry at `slot`. u is used up by the choice and comes back in *rest, uniform on [0, 1) again. */
-CDL_INLINE uint sample_alias(uint slot, float keep, uint alias, float u, float *rest) {
-  int kept = u < keep;
-  float span = kept ? keep : 1.0f - keep;
-  float part = kept ? u : u - keep;
-  *rest = math_clamp(part / (span > 0.0f ? span : 1.0f), 0.0f, CDL_ONE_MINUS_EPSILON);
-  return kept ? slot : alias;
-}
-
 /* Multiple importance sampling (Veach 1997, section 9.2): the weight of a sample drawn with density
  * `own` that the other technique would have drawn with density `other`, both >= 0. Infinite
  * densities are limits; two equal ones weigh 1/2, and own = 0 weighs 0. */

@@ -11,6 +11,7 @@
 #include "lib/math.h"
 #include "lib/sampling.h"
 #include "light/light_sample.h"
+#include "light/select.h"
 
 CDL_INLINE vec3 environment_to_map(CDL_CONSTANT cdl_EnvironmentParams *env, vec3 d) {
   return v3(env->rotation_cos * d.x - env->rotation_sin * d.z, d.y,
@@ -28,6 +29,13 @@ CDL_INLINE void environment_uv(CDL_CONSTANT cdl_EnvironmentParams *env, vec3 dir
   vec3 d = environment_to_map(env, direction);
   *u = 0.5f + math_atan2(d.z, d.x) * CDL_INV_2PI;
   *v = math_acos(math_clamp(d.y, -1.0f, 1.0f)) * CDL_INV_PI;
+}
+
+/* An index brought into 0 … n - 1, whatever it came from: a direction that is not a number must not
+ * read beyond the map. */
+CDL_INLINE int environment_index(int i, int n) {
+  int below = i < n ? i : n - 1;
+  return below > 0 ? below : 0;
 }
 
 CDL_INLINE vec3 environment_texel(CDL_GLOBAL const float *texels, uint width, int x, int y) {
@@ -57,10 +65,12 @@ CDL_INLINE vec3 environment_radiance(CDL_CONSTANT cdl_EnvironmentParams *env,
   int x1 = x0 + 1;
   int y0 = (int)y_floor;
   int y1 = y0 + 1;
-  x0 = x0 < 0 ? x0 + width : x0 >= width ? x0 - width : x0;
+  x0 = x0 < 0 ? x0 + width : x0;
   x1 = x1 >= width ? x1 - width : x1;
-  y0 = y0 < 0 ? 0 : y0 >= height ? height - 1 : y0;
-  y1 = y1 >= height ? height - 1 : y1;
+  x0 = environment_index(x0, width);
+  x1 = environment_index(x1, width);
+  y0 = environment_index(y0, height);
+  y1 = environment_index(y1, height);
   vec3 top = environment_lerp(environment_texel(texels, env->width, x0, y0),
                               environment_texel(texels, env->width, x1, y0), x - x_floor);
   vec3 bottom = environment_lerp(environment_texel(texels, env->width, x0, y1),
@@ -100,22 +110,19 @@ CDL_INLINE float environment_pdf(CDL_CONSTANT cdl_EnvironmentParams *env,
   int rows = (int)env->rows;
   int column = (int)(u * (float)columns);
   int row = (int)(v * (float)rows);
-  column = column >= columns ? columns - 1 : column;
-  row = row >= rows ? rows - 1 : row;
+  column = environment_index(column, columns);
+  row = environment_index(row, rows);
   float height = environment_row_height(env, row);
   return environment_cell_pdf(env, cells[(uint)(row * columns + column)].pdf, height);
 }
 
-/* u and v choose the cell, s and t the point in it. */
+/* `bits` and v choose the cell, s and t the point in it. */
 CDL_INLINE LightSample environment_sample(CDL_CONSTANT cdl_EnvironmentParams *env,
                                           CDL_GLOBAL const float *texels,
-                                          CDL_GLOBAL const cdl_AliasEntry *cells, float u, float v,
+                                          CDL_GLOBAL const cdl_AliasEntry *cells, uint bits, float v,
                                           float s, float t) {
   int columns = (int)env->columns;
-  int count = columns * (int)env->rows;
-  int slot = (int)(u * (float)count);
-  slot = slot >= count ? count - 1 : slot;
-  int cell = v < cells[(uint)slot].keep ? slot : (int)cells[(uint)slot].alias;
+  int cell = (int)alias_pick(cells, env->columns * env->rows, bits, v);
   int row = (int)floor(((float)cell + 0.5f) / (float)columns); /* exact: fewer than 2^22 cells */
   int column = cell - row * columns;
   float top = environment_row_cosine(env, row);

@@ -28,7 +28,9 @@ __kernel void camera_medium(CDL_CONSTANT cdl_Params *restrict params,
     Hit hit = bvh_closest_after(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
                                 direction, reach, CDL_MASK_ALL, last);
     if (!hit_is_some(hit)) break;
+    int repeated = hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes);
     last = hit;
+    if (repeated) continue;
     CDL_GLOBAL const cdl_Material *material =
         materials + shapes[triangles[hit.primitive].shape].material;
     /* Opaque surfaces are often open; they count as closed only if they say what they hold. */

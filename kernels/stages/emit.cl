@@ -39,8 +39,7 @@ __kernel void emit(CDL_CONSTANT cdl_Wave *restrict wave,
         first_light != CDL_NONE ? first_light + triangle_index - shape->first_triangle : 0u;
     vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
     vec3 normal = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
-    float distance = state_float(path, CDL_PATH_TRAVELLED, stride, i) +
-                     state_float(path, CDL_PATH_HIT_T, stride, i);
+    float distance = state_float(path, CDL_PATH_HIT_T, stride, i);
     float light_pdf = light_triangle_pdf(lights + light, distance, v3_dot(normal, direction));
     light_pdf = first_light != CDL_NONE ? light_pdf : 0.0f;
     float pdf = state_float(path, CDL_PATH_PDF, stride, i);

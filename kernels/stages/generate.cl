@@ -25,7 +25,7 @@ __kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, ray.direction);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_all(used ? 1.0f : 0.0f));
     state_set_float(path, CDL_PATH_PDF, stride, i, 0.0f);
-    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
+    state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
     state_set_uint(path, CDL_PATH_SLOT, stride, i, (uint)i);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, 0u);
     state_set_uint(path, CDL_PATH_MEDIA, stride, i, camera_media[0]);

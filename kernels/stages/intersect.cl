@@ -5,6 +5,7 @@
 #include "abi/material.h"
 #include "abi/params.h"
 #include "bvh/traverse.h"
+#include "lib/passable.h"
 #include "lib/state.h"
 
 /* The queue of the material that was hit. A path that `ends` here can only see what is emitted,
@@ -26,15 +27,30 @@ __kernel void
 intersect(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
           CDL_GLOBAL const BvhNode *bvh_nodes, CDL_GLOBAL const BvhTriangle *bvh_triangles,
           CDL_GLOBAL const cdl_BvhInstance *bvh_instances, CDL_GLOBAL const cdl_Triangle *triangles,
-          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const cdl_Material *materials,
-          CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
+          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes,
+          CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
   size_t i = get_global_id(0);
   size_t stride = wave->stride;
   if (state_uint(work, CDL_WORK_QUEUE, stride, i) == CDL_QUEUE_DEAD) return;
   vec3 origin = state_vec3(path, CDL_PATH_ORIGIN, stride, i);
   vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+#ifdef CDL_PASSABLE
+  Hit last = hit_none(state_float(path, CDL_PATH_PASSED, stride, i));
+  if (last.t > 0.0f) {
+    last.primitive = state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i);
+    last.instance = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
+  }
+  Hit hit = bvh_closest_after(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
+                              direction, CDL_INFINITY, CDL_MASK_ALL, last);
+  while (hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes)) {
+    last = hit;
+    hit = bvh_closest_after(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
+                            direction, CDL_INFINITY, CDL_MASK_ALL, last);
+  }
+#else
   Hit hit = bvh_closest(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
                         direction, CDL_INFINITY, CDL_MASK_ALL);
+#endif
   int found = hit_is_some(hit);
   state_set_float(path, CDL_PATH_HIT_T, stride, i, found ? hit.t : CDL_INFINITY);
   state_set_float(path, CDL_PATH_HIT_U, stride, i, hit.u);

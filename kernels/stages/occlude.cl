@@ -8,6 +8,16 @@
 #include "lib/state.h"
 #include "media/homogeneous.h"
 
+/* How far a shadow ray goes: short of the light, which would else shadow its own points, by some
+ * hundred units in the last place of the coordinates there. */
+CDL_INLINE float shadow_reach(vec3 origin, vec3 direction, float distance) {
+  vec3 target = v3_madd(origin, distance, direction);
+  float size = math_max(math_max(math_abs(origin.x), math_abs(target.x)),
+                        math_max(math_abs(origin.y), math_abs(target.y)));
+  size = math_max(size, math_max(math_abs(origin.z), math_abs(target.z)));
+  return distance < CDL_INFINITY ? math_max(fma(-3e-5f, size, distance), 0.0f) : CDL_INFINITY;
+}
+
 #ifdef CDL_MEDIA
 CDL_INLINE vec3 medium_transmittance(CDL_GLOBAL const cdl_Medium *medium, float distance) {
   vec3 extinction = v3(medium->absorption[0] + medium->scattering[0],
@@ -34,8 +44,7 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
   vec3 origin = state_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i);
   vec3 direction = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float distance = state_float(work, CDL_WORK_LIGHT_DISTANCE, stride, i);
-  /* Short of the light itself, which would otherwise shadow its own points. */
-  float reach = distance < CDL_INFINITY ? distance * 0.9999f : CDL_INFINITY;
+  float reach = shadow_reach(origin, direction, distance);
   if (bvh_occluded(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin, direction,
                    reach, CDL_MASK_OPAQUE))
     return;
@@ -62,9 +71,8 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
     CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
     CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
     CDL_GLOBAL const cdl_Material *material = materials + shape->material;
-    /* A ray through an edge meets both triangles, but crosses the surface once. */
     int repeated =
-        hit_is_some(last) && hit.t == last.t && triangle->shape == triangles[last.primitive].shape;
+        hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes);
     if (material->model != CDL_MODEL_INTERFACE) {
       TextureCoords uv = shape_texture_coords(shape, attributes, triangle, hit.u, hit.v);
       Texel base = material_base(material, shape, attributes, triangle, hit.u, hit.v, uv, textures,

@@ -28,8 +28,8 @@ __kernel void opacity(CDL_CONSTANT cdl_Params *restrict params,
 
     PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
     uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
-    float select, chance;
-    vertex_random(random, counts_vertex(counts), CDL_PAIR_SELECT, &select, &chance);
+    float chance, unused;
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_OPACITY, &chance, &unused);
     int through = on_surface & (chance >= material_opacity(material, base.a));
     state_set_uint(work, CDL_WORK_QUEUE, stride, i, through ? CDL_QUEUE_PASS : queue);
   }

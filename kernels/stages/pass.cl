@@ -2,7 +2,6 @@
 #include "lib/stage.h"
 
 #include "abi/params.h"
-#include "lib/sampling.h"
 #include "lib/state.h"
 #include "media/stack.h"
 
@@ -13,11 +12,8 @@ __kernel void pass(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wa
     size_t stride = wave->stride;
     uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
     uint material = state_uint(work, CDL_WORK_MATERIAL, stride, i);
-    vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-    vec3 normal = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-    float travelled = state_float(path, CDL_PATH_TRAVELLED, stride, i) +
-                      state_float(path, CDL_PATH_HIT_T, stride, i);
+    float passed = state_float(path, CDL_PATH_HIT_T, stride, i);
     uint counts = counts_passed(state_uint(path, CDL_PATH_COUNTS, stride, i));
 
     MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
@@ -27,8 +23,7 @@ __kernel void pass(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wa
     int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
     int alive = v3_max(throughput) > 0.0f && (counts_vertex(counts) < params->pass_limit);
 
-    state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, v3_neg(normal)));
-    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, travelled);
+    state_set_float(path, CDL_PATH_PASSED, stride, i, passed);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts);
     state_set_uint(path, CDL_PATH_MEDIA, stride, i, boundary ? crossed.inner : before.inner);
     state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, boundary ? crossed.outer : before.outer);

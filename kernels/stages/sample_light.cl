@@ -6,6 +6,7 @@
 #include "lib/state.h"
 #include "light/environment.h"
 #include "light/punctual.h"
+#include "light/select.h"
 
 /* What an emissive triangle emits at these barycentrics; holes emit nothing. */
 CDL_INLINE vec3 triangle_radiance(CDL_GLOBAL const cdl_Light *light, float b1, float b2,
@@ -42,16 +43,12 @@ sample_light(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *re
     vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
     PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
     uint vertex = counts_vertex(state_uint(path, CDL_PATH_COUNTS, stride, i));
-    float choice, unused, u, v;
-    vertex_random(random, vertex, CDL_PAIR_SELECT, &choice, &unused);
-    vertex_random(random, vertex, CDL_PAIR_LIGHT, &u, &v);
-
-    /* Alias method; the fraction left of `choice` decides between slot and alias. */
-    float scaled = choice * (float)(int)params->light_count;
-    uint slot = (uint)(int)scaled;
-    slot = slot < params->light_count ? slot : params->light_count - 1u;
-    float fraction = scaled - (float)(int)slot;
-    uint chosen = fraction < light_table[slot].keep ? slot : light_table[slot].alias;
+    uint slot_bits, keep_bits, u_bits, v_bits;
+    vertex_random_bits(random, vertex, CDL_PAIR_SELECT, &slot_bits, &keep_bits);
+    vertex_random_bits(random, vertex, CDL_PAIR_LIGHT, &u_bits, &v_bits);
+    float u = rng_to_unit(u_bits);
+    float v = rng_to_unit(v_bits);
+    uint chosen = alias_pick(light_table, params->light_count, slot_bits, rng_to_unit(keep_bits));
     CDL_GLOBAL const cdl_Light *light = lights + chosen;
     uint type = light->type;
 
@@ -74,7 +71,7 @@ sample_light(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *re
     float s, t;
     vertex_random(random, vertex, CDL_PAIR_TEXEL, &s, &t);
     LightSample sky =
-        environment_sample(&params->environment, environment, environment_cells, u, v, s, t);
+        environment_sample(&params->environment, environment, environment_cells, u_bits, v, s, t);
     sample = light_sample_select(type == CDL_LIGHT_ENVIRONMENT, sky, sample);
 #endif
     state_set_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i, sample.direction);

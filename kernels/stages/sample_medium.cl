@@ -24,7 +24,9 @@ __kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
     vec3 emission = v3(medium->emission[0], medium->emission[1], medium->emission[2]);
 
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-    float distance = state_float(path, CDL_PATH_HIT_T, stride, i);
+    float passed = state_float(path, CDL_PATH_PASSED, stride, i);
+    float hit_t = state_float(path, CDL_PATH_HIT_T, stride, i);
+    float distance = hit_t - passed;
     uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);
     uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
     PathRandom random = path_random(params, wave, slot);
@@ -41,7 +43,7 @@ __kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
     int scattered = alive & flight.scattered;
     vec3 next = v3_mul(throughput, flight.weight);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(alive, next, throughput));
-    state_set_float(path, CDL_PATH_HIT_T, stride, i, scattered ? flight.t : distance);
+    state_set_float(path, CDL_PATH_HIT_T, stride, i, scattered ? passed + flight.t : hit_t);
     uint next_queue = counts_depth(counts) < params->max_depth ? CDL_QUEUE_MEDIUM : CDL_QUEUE_ENDED;
     state_set_uint(work, CDL_WORK_QUEUE, stride, i, scattered ? next_queue : queue);
   }

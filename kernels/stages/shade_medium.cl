@@ -46,7 +46,7 @@ __kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, sample.wi);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
     state_set_float(path, CDL_PATH_PDF, stride, i, sample.pdf);
-    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
+    state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
     state_set_uint(work, CDL_WORK_QUEUE, stride, i,
                    v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);

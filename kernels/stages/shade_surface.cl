@@ -79,7 +79,7 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, wi);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
     state_set_float(path, CDL_PATH_PDF, stride, i, sample.delta ? 0.0f : sample.pdf);
-    state_set_float(path, CDL_PATH_TRAVELLED, stride, i, 0.0f);
+    state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
 #if CDL_SHADE_TRANSMITS
     MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),

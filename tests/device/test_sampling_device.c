@@ -34,13 +34,6 @@ COMPARE_SHARED(
       return b0 - b1;
     })
 
-COMPARE_SHARED(
-    pick_alias, CDL_INLINE float pick_alias(float u, float v) {
-      float fraction, rest;
-      uint slot = sample_alias_slot(u, 1000u, &fraction);
-      return (float)sample_alias(slot, 0.3f, 7u, fraction, &rest) + rest * v;
-    })
-
 /* Numbers as rng.h makes them: where fma meets denormals, devices may differ. */
 COMPARE_SHARED(
     pick_frame, CDL_INLINE Frame pick_frame(float u, float v) {
@@ -67,7 +60,6 @@ COMPARE_SHARED(
   X(sphere_z, 0.99999994f, sample_sphere(math_abs(a), math_abs(b)).z)                              \
   X(cone_y, 0.99999994f, sample_cone(math_abs(a), math_abs(b), 0.01f).y)                           \
   X(triangle, 0.99999994f, pick_triangle(math_abs(a), math_abs(b)))                                \
-  X(alias, 0.99999994f, pick_alias(math_abs(a), math_abs(b)))                                      \
   X(mis_power, INFINITY, mis_power(math_abs(a), math_abs(b)))                                      \
   X(mis_balance, INFINITY, mis_balance(math_abs(a), math_abs(b)))                                  \
   X(offset, 1e6f, offset_coordinate(a, math_clamp(b, -1.0f, 1.0f)))                                \
@@ -89,7 +81,6 @@ static const char *const source[] = {"#include \"lib/color.h\"\n",
                                      pick_pair_text,
                                      pick_disk_text,
                                      pick_triangle_text,
-                                     pick_alias_text,
                                      pick_frame_text,
                                      pick_tangent_text,
                                      CASES(COMPARE_KERNEL),

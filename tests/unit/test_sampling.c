@@ -10,7 +10,9 @@
 #include <stdlib.h>
 
 #include "lib/sampling.h"
+#include "light/select.h"
 #include "random.h"
+#include "scene/alias.h"
 
 enum { SAMPLES = 1000000, SIDE = 32, CELLS = SIDE * SIDE };
 
@@ -184,40 +186,16 @@ static void triangle_is_uniform(void **state) {
 
 enum { ENTRIES = 37 };
 
-/* Vose's construction in double. */
-static void build_alias(const double *weights, float *keep, uint *alias) {
-  double scaled[ENTRIES], total = 0.0;
-  int small[ENTRIES], large[ENTRIES], smalls = 0, larges = 0;
-  for (int i = 0; i < ENTRIES; i++) total += weights[i];
-  for (int i = 0; i < ENTRIES; i++) {
-    scaled[i] = weights[i] * ENTRIES / total;
-    keep[i] = 1.0f;
-    alias[i] = (uint)i;
-    if (scaled[i] < 1.0)
-      small[smalls++] = i;
-    else
-      large[larges++] = i;
-  }
-  while (smalls && larges) {
-    int s = small[--smalls], l = large[larges - 1];
-    keep[s] = (float)scaled[s];
-    alias[s] = (uint)l;
-    scaled[l] -= 1.0 - scaled[s];
-    if (scaled[l] >= 1.0) continue;
-    larges--;
-    small[smalls++] = l;
-  }
+static uint random_bits(void) {
+  return (uint)(random_unit() * 65536.0f) << 16 | (uint)(random_unit() * 65536.0f);
 }
 
-static void alias_picks_by_weight_and_leaves_uniform_rest(void **state) {
+static void alias_tables_are_picked_from_by_weight(void **state) {
   (void)state;
   double weights[ENTRIES], total = 0.0;
-  float keep[ENTRIES];
-  uint alias[ENTRIES];
+  cdl_AliasEntry table[ENTRIES];
   for (int i = 0; i < ENTRIES; i++) total += weights[i] = i % 7 == 3 ? 0.0 : 1.0 + i * i % 11;
-  build_alias(weights, keep, alias);
-  Histogram rests;
-  histogram_uniform(&rests);
+  assert_int_equal(alias_build(NULL, weights, ENTRIES, table), CDL_OK);
   static Histogram picks;
   for (int i = 0; i < CELLS; i++) {
     picks.count[i] = 0.0;
@@ -225,27 +203,30 @@ static void alias_picks_by_weight_and_leaves_uniform_rest(void **state) {
   }
   random_start(6);
   for (int i = 0; i < SAMPLES; i++) {
-    float fraction, rest, u = random_unit();
-    uint slot = sample_alias_slot(u, ENTRIES, &fraction);
-    uint pick = sample_alias(slot, keep[slot], alias[slot], fraction, &rest);
-    assert_true(slot < ENTRIES && weights[pick] > 0.0 && rest >= 0.0f && rest < 1.0f);
+    uint pick = alias_pick(table, ENTRIES, random_bits(), random_unit());
+    assert_true(pick < ENTRIES && weights[pick] > 0.0);
     picks.count[pick] += 1.0;
-    float other = random_unit();
-    histogram_add(&rests, rest, other);
   }
   histogram_check(&picks, "alias picks");
-  histogram_check(&rests, "alias rest");
 }
 
-static void alias_slots_stay_inside(void **state) {
+/* A million entries: one number of 24 bits would not be enough for slot and chance together. */
+static void long_alias_tables_are_not_biased(void **state) {
   (void)state;
-  static const uint counts[] = {1u, 2u, 3u, 1000003u, 16777215u, 40000000u};
-  for (int i = 0; i < 6; i++) {
-    float fraction;
-    uint slot = sample_alias_slot(CDL_ONE_MINUS_EPSILON, counts[i], &fraction);
-    assert_true(slot < counts[i] && fraction >= 0.0f && fraction < 1.0f);
-    assert_int_equal(sample_alias_slot(0.0f, counts[i], &fraction), 0);
-  }
+  enum { MANY = 1000003 };
+  double *weights = malloc(MANY * sizeof *weights), heavy = 0.0, total = 0.0;
+  cdl_AliasEntry *table = malloc(MANY * sizeof *table);
+  for (int i = 0; i < MANY; i++) total += weights[i] = i % 2 ? 1000.0 : 1.0;
+  for (int i = 1; i < MANY; i += 2) heavy += weights[i];
+  assert_int_equal(alias_build(NULL, weights, MANY, table), CDL_OK);
+  random_start(8);
+  int picked = 0;
+  for (int i = 0; i < SAMPLES; i++)
+    picked += alias_pick(table, MANY, random_bits(), random_unit()) % 2;
+  double p = heavy / total;
+  assert_true(fabs(picked - p * SAMPLES) < 5.0 * sqrt(SAMPLES * p * (1.0 - p)) + 1.0);
+  free(weights);
+  free(table);
 }
 
 static void heuristics_weigh_to_one(void **state) {
@@ -315,8 +296,8 @@ int main(void) {
       cmocka_unit_test(sphere_is_uniform),
       cmocka_unit_test(cones_are_uniform),
       cmocka_unit_test(triangle_is_uniform),
-      cmocka_unit_test(alias_picks_by_weight_and_leaves_uniform_rest),
-      cmocka_unit_test(alias_slots_stay_inside),
+      cmocka_unit_test(alias_tables_are_picked_from_by_weight),
+      cmocka_unit_test(long_alias_tables_are_not_biased),
       cmocka_unit_test(heuristics_weigh_to_one),
       cmocka_unit_test(heuristics_keep_their_limits),
       cmocka_unit_test(offset_points_leave_their_surface),
