@@ -148,6 +148,24 @@ static cdl_Status check_film(const Reader *r, const cdl_Film *film) {
   return CDL_OK;
 }
 
+/* Whether the list of parts is what film_add() makes of the job's samples: blocks in order. */
+static cdl_Status check_parts(const Reader *r) {
+  const json_t *job = json_object_get(r->head, "job");
+  const json_t *list = json_object_get(json_object_get(r->head, "film"), "parts");
+  const uint32_t samples = job_integer(job, "samples");
+  const uint64_t first = job_integer(job, "first_sample") / CDL_FILM_BLOCK;
+  for (size_t i = 0; i < json_array_size(list); i++) {
+    const json_t *entry = json_array_get(list, i);
+    const uint64_t begin = (first + i) * CDL_FILM_BLOCK;
+    const uint64_t left = begin < samples ? samples - begin : 0;
+    const uint64_t wanted = left < CDL_FILM_BLOCK ? left : CDL_FILM_BLOCK;
+    if (!wanted || json_integer_value(json_array_get(entry, 0)) != (json_int_t)(first + i) ||
+        json_integer_value(json_array_get(entry, 1)) != (json_int_t)wanted)
+      return damaged(r, "its blocks are not those of its samples");
+  }
+  return CDL_OK;
+}
+
 /* The parts, in memory of their own; *parts stays NULL when there are none. */
 static cdl_Status read_parts(const Reader *r, const cdl_Film *film, const unsigned char *at,
                              cdl_FilmBlock **parts, uint32_t *count) {
@@ -191,13 +209,16 @@ static cdl_Status fill_film(const Reader *r, cdl_Film *film) {
 }
 
 cdl_Status checkpoint_read(const cdl_Log *log, const char *path, const json_t *job, cdl_Film *film,
-                           json_t **state) {
+                           cdl_StateCheck check, const void *user, json_t **state) {
   Reader r = {.log = log, .path = path};
   cdl_Status status = image_file_read(log, path, MAX_BYTES, &r.bytes, &r.size);
   if (status) return status;
   status = parse(&r);
   if (!status) status = job_check(log, path, json_object_get(r.head, "job"), "this render", job);
   if (!status) status = check_film(&r, film);
+  if (!status) status = check_parts(&r);
+  if (!status && check && !check(user, json_object_get(r.head, "state")))
+    status = damaged(&r, "it goes on where this render never is");
   if (!status) status = fill_film(&r, film);
   if (!status) *state = json_incref(json_object_get(r.head, "state"));
   json_decref(r.head);

@@ -14,9 +14,13 @@
 cdl_Status checkpoint_write(const cdl_Log *log, const char *path, const json_t *job,
                             const json_t *state, const cdl_Film *film);
 
+/* Whether a state is one that the reader can go on from. */
+typedef int (*cdl_StateCheck)(const void *user, const json_t *state);
+
 /* Fills a film of the same shape and gives back the state, which is the caller's. CDL_BAD_INPUT,
- * with film and *state untouched, if the file is damaged or of another job. */
+ * with film and *state untouched, if the file is damaged or of another job,
+ * or `check`, unless it is NULL, does not take the state. */
 cdl_Status checkpoint_read(const cdl_Log *log, const char *path, const json_t *job, cdl_Film *film,
-                           json_t **state);
+                           cdl_StateCheck check, const void *user, json_t **state);
 
 #endif

@@ -7,16 +7,24 @@
 
 static json_t *state_json(const cdl_Session *session) {
   const cdl_RenderStats *s = &session->stats;
-  return json_pack("{s:i, s:i, s:f, s:f, s:I, s:I, s:I, s:I, s:I}", "next_block",
-                   (int)session->next_block, "next_pixel", (int)session->next_pixel, "render_s",
-                   s->render_s, "render_cpu_s", s->render_cpu_s, "paths", (json_int_t)s->paths,
-                   "rays_camera", (json_int_t)s->rays_camera, "rays_bounce",
+  return json_pack("{s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I}", "next_block",
+                   (json_int_t)session->next_block, "next_pixel", (json_int_t)session->next_pixel,
+                   "render_s", s->render_s, "render_cpu_s", s->render_cpu_s, "paths",
+                   (json_int_t)s->paths, "rays_camera", (json_int_t)s->rays_camera, "rays_bounce",
                    (json_int_t)s->rays_bounce, "rays_shadow", (json_int_t)s->rays_shadow,
                    "bad_samples", (json_int_t)s->bad_samples);
 }
 
 static uint64_t count(const json_t *state, const char *name) {
   return (uint64_t)json_integer_value(json_object_get(state, name));
+}
+
+/* Where a render goes on, as it is read: the film that belongs to it is still the file's. */
+static int state_fits(const void *user, const json_t *state) {
+  const json_int_t block = json_integer_value(json_object_get(state, "next_block"));
+  const json_int_t pixel = json_integer_value(json_object_get(state, "next_pixel"));
+  return block >= 0 && block <= UINT32_MAX && pixel >= 0 && pixel <= UINT32_MAX &&
+         session_begins_at(user, (uint32_t)block, (uint32_t)pixel);
 }
 
 static void state_apply(cdl_Session *session, const json_t *state) {
@@ -56,7 +64,8 @@ cdl_Status cdl_session_save(cdl_Session *session, const char *path) {
 cdl_Status cdl_session_resume(cdl_Session *session, const char *path) {
   json_t *job = NULL, *state = NULL;
   cdl_Status status = checkpoint_job(session, &job);
-  if (!status) status = checkpoint_read(session->log, path, job, session->film, &state);
+  if (!status)
+    status = checkpoint_read(session->log, path, job, session->film, state_fits, session, &state);
   if (!status) state_apply(session, state);
   json_decref(state);
   json_decref(job);

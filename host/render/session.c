@@ -222,6 +222,27 @@ static uint32_t next_tile(const cdl_Session *session, const Pass *pass) {
   return row * pass->columns + divide_up(in_row, pass->tile_width * height);
 }
 
+static uint32_t blocks_end(const cdl_Settings *s) {
+  return divide_up(s->first_sample + s->sample_count, CDL_BLOCK_SAMPLES);
+}
+
+int session_begins_at(const cdl_Session *session, uint32_t next_block, uint32_t next_pixel) {
+  const cdl_Settings *s = &session->settings;
+  cdl_Session at = *session;
+  at.next_block = next_block;
+  at.next_pixel = next_pixel;
+  if (next_block < s->first_sample / CDL_BLOCK_SAMPLES || next_block > blocks_end(s)) return 0;
+  if (next_block == blocks_end(s) || !next_pixel) return !next_pixel;
+  const Pass pass = next_pass(&at);
+  const uint32_t tile = next_tile(&at, &pass);
+  if (tile >= pass.columns * pass.rows) return 0;
+  const uint32_t y = tile / pass.columns * pass.tile_height;
+  const uint32_t x = tile % pass.columns * pass.tile_width;
+  const uint32_t rest = s->crop[3] - y;
+  const uint32_t height = rest < pass.tile_height ? rest : pass.tile_height;
+  return (uint64_t)y * s->crop[2] + (uint64_t)x * height == next_pixel;
+}
+
 static uint64_t samples_total(const cdl_Session *session) {
   const cdl_Settings *s = &session->settings;
   return (uint64_t)s->crop[2] * s->crop[3] * s->sample_count;
@@ -247,8 +268,12 @@ static int out_of_time(const cdl_Session *session) {
 static cdl_Status render_pass(cdl_Session *session, cdl_Progress progress, void *user,
                               const Clock *clock, int *stop) {
   Pass pass = next_pass(session);
-  uint32_t tiles = pass.columns * pass.rows;
-  for (uint32_t tile = next_tile(session, &pass); tile < tiles && !*stop; tile++) {
+  uint32_t tiles = pass.columns * pass.rows, first = next_tile(session, &pass);
+  if (first >= tiles)
+    return log_fail(session->log, CDL_BAD_INPUT,
+                    "samples %u and on: no tile is left to render; start without --resume",
+                    pass.first_sample);
+  for (uint32_t tile = first; tile < tiles && !*stop; tile++) {
     cdl_Status status = render_tile(session, &pass, tile);
     if (status) return status;
     update_times(session, clock);

@@ -35,4 +35,8 @@ struct cdl_Session {
   struct cdl_Wavefront *wavefront; /* everything on the device */
 };
 
+/* Whether a render with these settings is ever at that block and pixel, between two tiles; both as
+ * the members of these names. */
+int session_begins_at(const cdl_Session *session, uint32_t next_block, uint32_t next_pixel);
+
 #endif

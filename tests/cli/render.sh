@@ -100,6 +100,21 @@ check "as one that was not interrupted" same_film resumed.json whole.json
 check "another scene is refused" run 3 render sheet.gltf --background 1,1,1 --size 160x96 \
   --spp 1024 -o x.exr --checkpoint c.checkpoint --resume
 check "by name" has err "c.checkpoint: does not belong to this render"
+# Nor is one that goes on where no tile begins, though its checksum is right.
+python3 - << 'PYTHON'
+import hashlib, json, struct
+data = open("c.checkpoint", "rb").read()[:-32]
+at = data.index(b"\n") + 1
+size = struct.unpack("=I", data[at + 4:at + 8])[0]
+head = json.loads(data[at + 8:at + 8 + size])
+head["state"]["next_pixel"] = 160 * 96
+text = json.dumps(head).encode()
+data = data[:at + 4] + struct.pack("=I", len(text)) + text + data[at + 8 + size:]
+open("beyond.checkpoint", "wb").write(data + hashlib.sha256(data).digest())
+PYTHON
+check "a state out of range is refused" run 3 "${long[@]}" -o x.exr --checkpoint beyond.checkpoint \
+  --resume
+check "by name" has err "beyond.checkpoint: the checkpoint is damaged: it goes on where"
 head -c 1000 c.checkpoint > short.checkpoint
 check "a damaged one is refused" run 3 render sheet.gltf --size 160x96 -o x.exr \
   --checkpoint short.checkpoint --resume

@@ -231,7 +231,7 @@ static void checkpoint_goes_on(void **state) {
     char *path = path_of("c.checkpoint");
     assert_int_equal(checkpoint_write(&test_log, path, job, at, half), CDL_OK);
     assert_int_equal(film_create(&test_log, WIDTH, HEIGHT, aovs, keep, &again), CDL_OK);
-    assert_int_equal(checkpoint_read(&test_log, path, job, again, &back), CDL_OK);
+    assert_int_equal(checkpoint_read(&test_log, path, job, again, NULL, NULL, &back), CDL_OK);
     assert_true(json_equal(at, back));
     assert_same_film(half, again);
     float *sums = malloc(sizeof *sums * again->channels * PIXELS);
@@ -257,7 +257,7 @@ static void checkpoint_goes_on(void **state) {
 static cdl_Status read_checkpoint(const char *path, int seed) {
   cdl_Film *film = film_of(0, 1, 1), *before = film_of(0, 1, 1);
   json_t *job = job_of(seed), *at = NULL;
-  cdl_Status status = checkpoint_read(&test_log, path, job, film, &at);
+  cdl_Status status = checkpoint_read(&test_log, path, job, film, NULL, NULL, &at);
   if (status) assert_same_film(film, before);
   if (status) assert_null(at);
   json_decref(at);
@@ -298,6 +298,34 @@ static void checkpoint_damage(void **state) {
   film_free(film);
 }
 
+static int takes_later_blocks(const void *user, const json_t *state) {
+  assert_ptr_equal(user, &test_log);
+  return json_integer_value(json_object_get(state, "next_block")) > 1;
+}
+
+/* Its checksum is right, but its blocks are not the first ones, or its state is none of ours. */
+static void checkpoint_out_of_order(void **state) {
+  (void)state;
+  cdl_Film *film = film_of(1, 2, 1), *into = film_of(0, 1, 1), *before = film_of(0, 1, 1);
+  json_t *job = job_of(1), *at = json_pack("{s:i}", "next_block", 1), *back = NULL;
+  char *path = path_of("e.checkpoint");
+  assert_int_equal(checkpoint_write(&test_log, path, job, at, film), CDL_OK);
+  assert_int_equal(checkpoint_read(&test_log, path, job, into, NULL, NULL, &back), CDL_BAD_INPUT);
+  assert_non_null(strstr(last_message, "its blocks are not those of its samples"));
+  assert_int_equal(checkpoint_write(&test_log, path, job, at, before), CDL_OK);
+  assert_int_equal(
+      checkpoint_read(&test_log, path, job, into, takes_later_blocks, &test_log, &back),
+      CDL_BAD_INPUT);
+  assert_non_null(strstr(last_message, "goes on where this render never is"));
+  assert_same_film(into, before);
+  assert_null(back);
+  json_decref(job);
+  json_decref(at);
+  film_free(film);
+  film_free(into);
+  film_free(before);
+}
+
 static int set_up(void **state) {
   (void)state;
   return mkdtemp(folder) ? 0 : -1;
@@ -321,6 +349,7 @@ int main(void) {
       cmocka_unit_test(large_parts),
       cmocka_unit_test(checkpoint_goes_on),
       cmocka_unit_test(checkpoint_damage),
+      cmocka_unit_test(checkpoint_out_of_order),
   };
   return cmocka_run_group_tests(tests, set_up, tear_down);
 }
