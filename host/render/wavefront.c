@@ -126,6 +126,7 @@ static cdl_Status write_wave(cdl_Wavefront *w) {
 static cdl_Status start_paths(cdl_Wavefront *w) {
   cdl_Status status = write_wave(w);
   if (!status) status = run_all(w, CDL_KERNEL_generate, w->wave.live);
+  if (!status && w->wide_camera) status = run_all(w, CDL_KERNEL_lens_medium, w->wave.live);
   if (!status && w->has_aovs) status = run_all(w, CDL_KERNEL_clear_first_hit, w->wave.live);
   return status;
 }

@@ -50,6 +50,7 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   for (int i = 0; i < (int)CDL_MODEL_COUNT; i++) emissive |= models[i] & 2;
   list_add(list, f->media, CDL_KERNEL_camera_medium);
   list_add(list, 1, CDL_KERNEL_generate);
+  list_add(list, w->wide_camera, CDL_KERNEL_lens_medium);
   list_add(list, w->has_aovs, CDL_KERNEL_clear_first_hit);
   list_add(list, 1, CDL_KERNEL_intersect);
   list_add(list, f->opacity, CDL_KERNEL_opacity);
@@ -222,6 +223,8 @@ cdl_Status wavefront_create(cdl_Device *device, const cdl_Pack *pack, const cdl_
   w->features = pack->features;
   w->has_lights = pack->light_count > 0;
   w->paths = paths;
+  w->wide_camera =
+      pack->features.media && (params->camera.orthographic || params->camera.lens_radius > 0.0f);
   cdl_Status status = upload_scene(w, pack);
   if (!status) status = make_film_channels(w, film);
   if (!status) status = make_wave_buffers(w);

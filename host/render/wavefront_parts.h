@@ -8,7 +8,8 @@
 /* Every buffer, under the name that device/kernels.def uses, and whether the kernels fill it. */
 #define CDL_BUFFERS(B)                                                                             \
   B(params)                                                                                        \
-  B(wave) B(camera_media) B(bvh_nodes) B(bvh_triangles) B(bvh_instances) B(triangles) B(shapes)    \
+  B(wave)                                                                                          \
+  B(camera_media) B(bvh_nodes) B(bvh_triangles) B(bvh_instances) B(triangles) B(shapes)            \
       B(attributes) B(materials) B(textures) B(texels) B(srgb) B(lights) B(light_table)            \
           B(environment) B(environment_cells) B(media) B(film_channels) B(path_a) B(path_b)        \
               B(work) B(slots) B(counts) B(ranges) B(sources) B(sums) B(bad_samples)
@@ -26,7 +27,8 @@ struct cdl_Wavefront {
   cdl_Wave wave; /* the current one */
   cdl_PackFeatures features;
   int has_lights, has_aovs;
-  uint32_t paths; /* of a wave, at the most */
+  int wide_camera; /* rays begin in more than one place, and there are media that may begin there */
+  uint32_t paths;  /* of a wave, at the most */
   cdl_QueueRange ranges[CDL_QUEUE_COUNT + 1];
   cdl_Buffer buffers[BUFFER_COUNT];
   cdl_Bindings bindings;

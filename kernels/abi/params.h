@@ -10,7 +10,7 @@
 typedef struct cdl_CameraParams {
   float to_world[12]; /* 3x4, row-major; looks along -Z */
   float scale[2]; /* half width and height of the image: at distance 1, or in m if orthographic */
-  float lens_radius; /* m; 0: pinhole */
+  float lens_radius;   /* m; 0: pinhole */
   float inverse_focus; /* 1 / m; 0: focused at infinity */
   uint orthographic;
   uint blades;                /* of the aperture, at least 1; below 3: round */

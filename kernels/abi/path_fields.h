@@ -14,7 +14,8 @@ CDL_FIELD(PATH, THROUGHPUT, 3)
  * delta lobe), so no light sampling competes with it. */
 CDL_FIELD(PATH, PDF, 1)
 /* Distance along the ray, in m, of the last surface that was passed straight through; 0: none. The
- * origin stays where it was, and HIT_TRIANGLE and HIT_INSTANCE name that surface until the next hit. */
+ * origin stays where it was, and HIT_TRIANGLE and HIT_INSTANCE name that surface until the next
+ * hit. */
 CDL_FIELD(PATH, PASSED, 1)
 /* Slot, see cdl_Wave; slots from path_count on are trash cans for padding. */
 CDL_FIELD(PATH, SLOT, 1)

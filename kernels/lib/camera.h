@@ -49,7 +49,8 @@ CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, 
   vec3 focus = v3(sx, sy, -1.0f);
   int ortho = camera->orthographic != 0u;
   vec3 origin = v3_select(ortho, v3(sx, sy, 0.0f), lens);
-  vec3 towards = v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_madd(focus, -camera->inverse_focus, lens));
+  vec3 towards =
+      v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_madd(focus, -camera->inverse_focus, lens));
   CameraRay ray;
   Transform to_world = transform_of_camera(camera);
   ray.origin = transform_point(to_world, origin);

@@ -25,12 +25,12 @@ CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInsta
 }
 
 /* Whether `hit` is the same crossing as the `last` hit of its ray: a ray through an edge meets the
- * triangles on both sides of it, at distances that are rounded apart, but crosses the surface once. */
+ * triangles on both sides of it, at distances that are rounded apart, but crosses the surface once.
+ */
 CDL_INLINE int hit_repeats(Hit hit, Hit last, vec3 direction,
                            CDL_GLOBAL const cdl_BvhInstance *instances,
                            CDL_GLOBAL const cdl_Triangle *triangles,
-                           CDL_GLOBAL const cdl_Shape *shapes,
-                           CDL_GLOBAL const float *attributes) {
+                           CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes) {
   if (!hit_is_some(hit) || !hit_is_some(last) || hit.instance != last.instance) return 0;
   if (triangles[hit.primitive].shape != triangles[last.primitive].shape) return 0;
   if (hit.t - last.t > 1e-6f * hit.t) return 0;

@@ -119,8 +119,8 @@ CDL_INLINE float environment_pdf(CDL_CONSTANT cdl_EnvironmentParams *env,
 /* `bits` and v choose the cell, s and t the point in it. */
 CDL_INLINE LightSample environment_sample(CDL_CONSTANT cdl_EnvironmentParams *env,
                                           CDL_GLOBAL const float *texels,
-                                          CDL_GLOBAL const cdl_AliasEntry *cells, uint bits, float v,
-                                          float s, float t) {
+                                          CDL_GLOBAL const cdl_AliasEntry *cells, uint bits,
+                                          float v, float s, float t) {
   int columns = (int)env->columns;
   int cell = (int)alias_pick(cells, env->columns * env->rows, bits, v);
   int row = (int)floor(((float)cell + 0.5f) / (float)columns); /* exact: fewer than 2^22 cells */

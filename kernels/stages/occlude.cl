@@ -71,8 +71,7 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
     CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
     CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
     CDL_GLOBAL const cdl_Material *material = materials + shape->material;
-    int repeated =
-        hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes);
+    int repeated = hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes);
     if (material->model != CDL_MODEL_INTERFACE) {
       TextureCoords uv = shape_texture_coords(shape, attributes, triangle, hit.u, hit.v);
       Texel base = material_base(material, shape, attributes, triangle, hit.u, hit.v, uv, textures,

@@ -1,0 +1,37 @@
+/* walk.h: the media that a point is inside of, known from those of another point: what a straight
+ * line between them enters and leaves. */
+#ifndef CDL_MEDIA_WALK_H
+#define CDL_MEDIA_WALK_H
+
+#include "bvh/traverse.h"
+#include "lib/passable.h"
+
+/* Follows `direction` from `origin` to `reach` (in units of direction) and keeps account of every
+ * boundary of a medium on the way, at most `limit` surfaces. */
+CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, float reach,
+                                 uint limit, CDL_GLOBAL const BvhNode *nodes,
+                                 CDL_GLOBAL const BvhTriangle *bvh_triangles,
+                                 CDL_GLOBAL const cdl_BvhInstance *instances, uint root,
+                                 CDL_GLOBAL const cdl_Triangle *triangles,
+                                 CDL_GLOBAL const cdl_Shape *shapes,
+                                 CDL_GLOBAL const float *attributes,
+                                 CDL_GLOBAL const cdl_Material *materials) {
+  Hit last = hit_none(0.0f);
+  for (uint crossed = 0; crossed < limit; crossed++) {
+    Hit hit = bvh_closest_after(nodes, bvh_triangles, instances, root, origin, direction, reach,
+                                CDL_MASK_ALL, last);
+    if (!hit_is_some(hit)) break;
+    int repeated = hit_repeats(hit, last, direction, instances, triangles, shapes, attributes);
+    CDL_GLOBAL const cdl_Material *material =
+        materials + shapes[triangles[hit.primitive].shape].material;
+    int boundary =
+        material->model == CDL_MODEL_INTERFACE || material->model == CDL_MODEL_DIELECTRIC;
+    if (boundary && !repeated)
+      stack = hit_crossed(hit, stack, direction, material->medium, instances, triangles, shapes,
+                          attributes);
+    last = hit;
+  }
+  return stack;
+}
+
+#endif
