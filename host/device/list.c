@@ -2,6 +2,7 @@
 #include "device/device.h"
 
 #include "core/log.h"
+#include "core/text.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -23,7 +24,7 @@ static void device_string(cl_device_id id, cl_device_info what, char text[128]) 
   text[0] = 0;
   if (clGetDeviceInfo(id, what, 0, NULL, &size) || !size) return;
   char *all = calloc(1, size + 1);
-  if (all && !clGetDeviceInfo(id, what, size, all, NULL)) snprintf(text, 128, "%s", all);
+  if (all && !clGetDeviceInfo(id, what, size, all, NULL)) text_copy(text, 128, all);
   free(all);
   trim(text);
 }
@@ -33,7 +34,7 @@ static void platform_string(cl_platform_id id, cl_platform_info what, char text[
   text[0] = 0;
   if (clGetPlatformInfo(id, what, 0, NULL, &size) || !size) return;
   char *all = calloc(1, size + 1);
-  if (all && !clGetPlatformInfo(id, what, size, all, NULL)) snprintf(text, 128, "%s", all);
+  if (all && !clGetPlatformInfo(id, what, size, all, NULL)) text_copy(text, 128, all);
   free(all);
   trim(text);
 }

@@ -13,11 +13,12 @@ cdl_Status job_of_session(const cdl_Session *session, json_t **job) {
   cdl_Status status = source_hash(session->log, kernels);
   if (status) return status;
   snprintf(crop, sizeof crop, "%u,%u,%u,%u", s->crop[0], s->crop[1], s->crop[2], s->crop[3]);
-  *job = json_pack("{s:s, s:s, s:s, s:s, s:i, s:i, s:s, s:i, s:I, s:i, s:i, s:s}", "version",
+  *job = json_pack("{s:s, s:s, s:s, s:i, s:s, s:i, s:i, s:s, s:i, s:I, s:i, s:i, s:s}", "version",
                    CDL_VERSION, "scene_sha256", session->scene->sha256, "kernels_sha256", kernels,
-                   "camera", session->camera, "width", (int)s->width, "height", (int)s->height,
-                   "crop", crop, "samples", (int)s->samples, "seed", (json_int_t)s->seed,
-                   "max_depth", (int)s->max_depth, "aovs", (int)session->film->aovs, "math",
+                   "camera_index", (int)session->camera_index, "camera", session->camera, "width",
+                   (int)s->width, "height", (int)s->height, "crop", crop, "samples",
+                   (int)s->samples, "seed", (json_int_t)s->seed, "max_depth", (int)s->max_depth,
+                   "aovs", (int)session->film->aovs, "math",
                    s->fast_math ? device_info(session->device)->name : "exact");
   if (!*job) return log_fail(session->log, CDL_DEVICE, "not enough memory to describe this render");
   return CDL_OK;
@@ -28,6 +29,7 @@ static const char *member_meaning(const char *name) {
   static const char *const meanings[][2] = {{"version", "the version of Candela"},
                                             {"scene_sha256", "the scene"},
                                             {"kernels_sha256", "the kernels"},
+                                            {"camera_index", "the index of the camera"},
                                             {"camera", "the camera"},
                                             {"width", "the width"},
                                             {"height", "the height"},

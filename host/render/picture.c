@@ -17,31 +17,42 @@ static json_t *count_json(uint64_t count) {
   return json_string(text);
 }
 
-static json_t *header_json(const cdl_Session *session, const json_t *job, const char *film_sha256) {
+cdl_Status header_of_session(const cdl_Session *session, json_t **header) {
   const cdl_Settings *s = &session->settings;
   const cdl_DeviceInfo *device = device_info(session->device);
+  *header =
+      json_pack("{s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:O, s:O, s:O, s:o}", "version",
+                CDL_VERSION, "scene", session->scene->path, "platform", device->platform, "device",
+                device->name, "driver", device->driver, "camera", session->camera, "math",
+                s->fast_math ? "fast" : "exact", "spp", (int)s->samples, "max_depth",
+                (int)s->max_depth, "crop", json_object_get(session->job, "crop"), "scene_sha256",
+                json_object_get(session->job, "scene_sha256"), "kernels_sha256",
+                json_object_get(session->job, "kernels_sha256"), "seed", count_json(s->seed));
+  if (*header) return CDL_OK;
+  return log_fail(session->log, CDL_DEVICE, "not enough memory to describe the picture");
+}
+
+/* The session's header with what rendering adds to it; NULL if memory is short. */
+static json_t *rendered_header(const cdl_Session *session, const char *film_sha256) {
   uint32_t least, most;
+  json_t *header = json_copy(session->header);
   film_sample_range(session->film, &least, &most);
-  json_t *header = json_pack(
-      "{s:s, s:s, s:s, s:s, s:s, s:s, s:s, s:i, s:i, s:i, s:s, s:i, s:i, s:s}", "version",
-      CDL_VERSION, "scene", session->scene->path, "platform", device->platform, "device",
-      device->name, "driver", device->driver, "camera", session->camera, "math",
-      s->fast_math ? "fast" : "exact", "spp", (int)s->samples, "samples.least", (int)least,
-      "samples.most", (int)most, "film_sha256", film_sha256, "interrupted", session->interrupted,
-      "max_depth", (int)s->max_depth, "crop", json_string_value(json_object_get(job, "crop")));
-  json_object_set_new(header, "seed", count_json(s->seed));
-  json_object_set(header, "scene_sha256", json_object_get(job, "scene_sha256"));
-  json_object_set(header, "kernels_sha256", json_object_get(job, "kernels_sha256"));
+  if (json_object_set_new(header, "samples.least", json_integer(least)) ||
+      json_object_set_new(header, "samples.most", json_integer(most)) ||
+      json_object_set_new(header, "film_sha256", json_string(film_sha256)) ||
+      json_object_set_new(header, "interrupted", json_integer(session->interrupted))) {
+    json_decref(header);
+    return NULL;
+  }
   return header;
 }
 
 cdl_Status picture_of_session(cdl_Session *session, cdl_Picture *picture) {
-  *picture = (cdl_Picture){.log = session->log, .film = session->film};
-  cdl_Status status = job_of_session(session, &picture->job);
-  if (status) return status;
+  *picture =
+      (cdl_Picture){.log = session->log, .film = session->film, .job = json_incref(session->job)};
   picture->statistics = statistics_of_session(session);
   const char *digest = json_string_value(json_object_get(picture->statistics, "film_sha256"));
-  if (digest) picture->header = header_json(session, picture->job, digest);
+  if (digest) picture->header = rendered_header(session, digest);
   if (picture->header) return CDL_OK;
   picture_clear(picture);
   return log_fail(session->log, CDL_OUTPUT, "not enough memory to describe the picture");

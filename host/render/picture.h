@@ -15,6 +15,10 @@ struct cdl_Picture {
   json_t *statistics; /* statistics.h */
 };
 
+/* What is known of a picture's header before the render. *header is the caller's. CDL_DEVICE if
+ * memory is short. */
+cdl_Status header_of_session(const cdl_Session *session, json_t **header);
+
 /* The picture of a session as it is now; its film stays the session's. picture_clear() it. */
 cdl_Status picture_of_session(cdl_Session *session, cdl_Picture *picture);
 

@@ -43,8 +43,8 @@ static void state_apply(cdl_Session *session, const json_t *state) {
 
 /* The job of a checkpoint has the range of samples as well: the film holds those blocks. */
 static cdl_Status checkpoint_job(const cdl_Session *session, json_t **job) {
-  cdl_Status status = job_of_session(session, job);
-  if (status) return status;
+  *job = json_copy(session->job);
+  if (!*job) return log_fail(session->log, CDL_DEVICE, "not enough memory to describe this render");
   json_object_set_new(*job, "first_sample", json_integer(session->settings.first_sample));
   json_object_set_new(*job, "sample_count", json_integer(session->settings.sample_count));
   return CDL_OK;

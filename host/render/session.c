@@ -6,8 +6,11 @@
 
 #include "core/clock.h"
 #include "core/log.h"
+#include "core/text.h"
 #include "profile/watch.h"
 #include "render/camera.h"
+#include "render/job.h"
+#include "render/picture.h"
 #include "render/wavefront.h"
 #include "scene/pack_parts.h"
 
@@ -36,7 +39,8 @@ static cdl_Status resolve_settings(cdl_Session *session, const cdl_SceneCamera *
   camera_image_size(*camera, &s->width, &s->height);
   if (!s->sample_count) s->sample_count = s->samples - s->first_sample;
   status = resolve_crop(session->log, s);
-  strncpy(session->camera, (*camera)->name ? (*camera)->name : "", sizeof session->camera - 1);
+  text_copy(session->camera, sizeof session->camera, (*camera)->name);
+  session->camera_index = (uint32_t)(*camera - session->scene->cameras);
   session->next_block = s->first_sample / CDL_BLOCK_SAMPLES;
   return status;
 }
@@ -117,6 +121,12 @@ static cdl_Status put_on_device(cdl_Session *session, const cdl_SceneCamera *cam
   return CDL_OK;
 }
 
+/* What cannot be described is found out before the render, not when its picture is written. */
+static cdl_Status describe(cdl_Session *session) {
+  cdl_Status status = job_of_session(session, &session->job);
+  return status ? status : header_of_session(session, &session->header);
+}
+
 cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
                               const cdl_Settings *settings, cdl_Session **session) {
   *session = NULL;
@@ -136,6 +146,7 @@ cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_
   const cdl_Settings *r = &s->settings;
   int is_part = settings->first_sample || settings->sample_count;
   if (!status) status = film_create(log, r->crop[2], r->crop[3], r->aovs, is_part, &s->film);
+  if (!status) status = describe(s);
   if (!status) status = put_on_device(s, camera, &pack);
   pack_free(&pack);
   if (status)
@@ -151,6 +162,8 @@ void cdl_session_free(cdl_Session *session) {
   wavefront_free(session->wavefront);
   profile_free(session->profile);
   film_free(session->film);
+  json_decref(session->job);
+  json_decref(session->header);
   free(session);
 }
 

@@ -2,6 +2,8 @@
 #ifndef CANDELA_RENDER_SESSION_H
 #define CANDELA_RENDER_SESSION_H
 
+#include <jansson.h>
+
 #include "candela.h"
 #include "device/device.h"
 #include "profile/profile.h"
@@ -24,7 +26,10 @@ struct cdl_Session {
   const cdl_Scene *scene;
   cdl_Settings settings; /* resolved: size, crop and sample range are definite */
   char camera[128];      /* name of the camera in use */
+  uint32_t camera_index; /* among the scene's */
   cdl_Film *film;
+  json_t *job;          /* job_of_session() */
+  json_t *header;       /* header_of_session() */
   cdl_Profile *profile; /* NULL unless settings.profile */
   cdl_RenderStats stats;
   double resumed_s;    /* of stats.render_s: spent before the checkpoint */

@@ -7,6 +7,7 @@
 
 #include "core/clock.h"
 #include "core/hash.h"
+#include "core/text.h"
 #include "scene/build.h"
 #include "scene/check.h"
 
@@ -95,7 +96,11 @@ static cdl_Status convert(Document *doc, const cdl_SceneOptions *options, struct
   }
   builder.scene->medium = CDL_NONE;
   builder.scene->environment.image = CDL_NONE;
-  builder.scene->path = string_copy(doc->path);
+  builder.scene->path = text_duplicate(doc->path);
+  if (!builder.scene->path) {
+    status = document_out_of_memory(doc);
+    goto done;
+  }
   for (int c = 0; c < 3; c++)
     builder.scene->bounds[0][c] = INFINITY, builder.scene->bounds[1][c] = -INFINITY;
   status = build_scene(&builder);

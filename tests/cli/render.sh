@@ -65,6 +65,18 @@ check "a crop" render --crop 8,4,16,9 -o crop.exr --stats crop.json
 check "the picture is what the film is" run 0 compare a.exr a.exr
 check "a header tells the sheet's name" grep -qa "sheet.gltf" a.exr
 
+# A name that is not UTF-8 costs its byte, not the picture; two cameras without a name are two.
+bad=$'b\xffd.gltf'
+lens='{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}'
+sed -e 's/"nodes": \[0\]/"nodes": [0, 1, 2]/' -e "s/\"meshes\"/\"cameras\": [$lens, $lens], &/" \
+  -e 's/{"mesh": 0}/&, {"camera": 0}, {"camera": 1}/' sheet.gltf > "$bad"
+view=(render "$bad" --size 8x8 --spp 32 --quiet)
+check "a name that is not UTF-8" run 0 "${view[@]}" -o v0.exr --samples 0:16 --camera 0 --stats v.json
+check "is mended" has v.json 'b?d.gltf'
+check "another camera" run 0 "${view[@]}" -o v1.exr --samples 16:16 --camera 1
+check "is another picture" run 3 merge v0.exr v1.exr -o v.exr
+check "by its index" has err "the index of the camera is 1 there and 0 here"
+
 # A part of the film must be the same film, whatever the cut and the order.
 check "part 1" render --samples 32:20 -o c.exr --aov all
 check "part 2" render --samples 0:16 -o a1.exr --aov all
