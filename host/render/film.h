@@ -70,8 +70,9 @@ void *film_resolve_aov(const cdl_Film *film, cdl_AovId aov);
 /* SHA-256 of film_resolve(), little-endian, as 64 hexadecimal digits. CDL_DEVICE: no memory. */
 cdl_Status film_sha256(const cdl_Film *film, char digest[65]);
 
-/* Median over pixels of the relative standard error of the mean luminance; infinite below two
- * blocks. The error of a luminance is bounded by that of fully correlated channels. */
+/* Median of the relative standard error of the mean luminance over the pixels that are not black so
+ * far; infinite below two blocks, and while all are black. The error of a luminance is bounded by
+ * that of fully correlated channels. */
 double film_noise(const cdl_Film *film);
 
 void film_free(cdl_Film *film); /* NULL is nothing */

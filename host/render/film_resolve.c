@@ -86,7 +86,7 @@ cdl_Status film_sha256(const cdl_Film *film, char digest[65]) {
   return CDL_OK;
 }
 
-/* A black pixel without spread has no error; any spread about zero is an infinite one. */
+/* Negative for a pixel that is black so far: its light has not been found yet, or there is none. */
 static float relative_error(const cdl_Film *film, size_t pixel) {
   static const double luminance[3] = {0.2126, 0.7152, 0.0722}; /* Rec. 709 */
   const size_t pixels = film_pixels(film);
@@ -95,9 +95,7 @@ static float relative_error(const cdl_Film *film, size_t pixel) {
     mean += luminance[c] * film->sums[(size_t)c * pixels + pixel];
     error += luminance[c] * sqrt(variance_of_mean(film, c, pixel));
   }
-  mean /= film->samples[pixel] ? film->samples[pixel] : 1;
-  if (error == 0) return 0;
-  return mean > 0 ? (float)(error / mean) : INFINITY;
+  return mean > 0 ? (float)(error * film->samples[pixel] / mean) : -1;
 }
 
 /* The value of rank `rank`, by Hoare's selection; `values` is reordered. */
@@ -126,8 +124,12 @@ double film_noise(const cdl_Film *film) {
   const size_t pixels = film_pixels(film);
   float *errors = pixels ? malloc(pixels * sizeof *errors) : NULL;
   if (!errors) return INFINITY;
-  for (size_t i = 0; i < pixels; i++) errors[i] = relative_error(film, i);
-  const double median = select_rank(errors, pixels, pixels / 2);
+  size_t ranked = 0;
+  for (size_t i = 0; i < pixels; i++) {
+    const float error = relative_error(film, i);
+    if (error >= 0) errors[ranked++] = error;
+  }
+  const double median = ranked ? select_rank(errors, ranked, ranked / 2) : INFINITY;
   free(errors);
   return median;
 }

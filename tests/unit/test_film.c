@@ -147,6 +147,23 @@ static void noise_is_the_median(void **state) {
   film_free(film);
 }
 
+/* Light that is found rarely must not end a render: of five pixels one has got some so far. */
+static void noise_ignores_black_pixels(void **state) {
+  (void)state;
+  cdl_Film *film = make(5, 1, 0, 0);
+  float first[15] = {0}, second[15] = {0};
+  film_add(film, 0, 16, 0, 5, first, 5);
+  film_add(film, 1, 16, 0, 5, second, 5);
+  assert_true(isinf(film_noise(film)));
+  for (int c = 0; c < 3; c++) first[5 * c + 3] = 16 * 8, second[5 * c + 3] = 16 * 12;
+  film_free(film);
+  film = make(5, 1, 0, 0);
+  film_add(film, 0, 16, 0, 5, first, 5);
+  film_add(film, 1, 16, 0, 5, second, 5);
+  assert_true(fabs(film_noise(film) - 0.2) < 1e-6);
+  film_free(film);
+}
+
 /* SHA-256 of twelve bytes, 00 00 80 3f 00 00 00 40 00 00 40 40, by sha256sum. */
 static void hashes(void **state) {
   (void)state;
@@ -183,7 +200,7 @@ int main(void) {
       cmocka_unit_test(adds_in_double),      cmocka_unit_test(keeps_first_sample),
       cmocka_unit_test(estimates_variance),  cmocka_unit_test(variance_is_unbiased),
       cmocka_unit_test(noise_is_the_median), cmocka_unit_test(hashes),
-      cmocka_unit_test(keeps_blocks),
+      cmocka_unit_test(keeps_blocks),        cmocka_unit_test(noise_ignores_black_pixels),
   };
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
