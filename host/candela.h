@@ -59,7 +59,7 @@ void cdl_scene_free(cdl_Scene *scene); /* NULL is nothing */
  * was replaced, 64 hexadecimal digits; valid as long as the scene. */
 const char *cdl_scene_sha256(const cdl_Scene *scene);
 
-/* An OpenCL device, opened. One session uses it at a time. */
+/* An OpenCL device, opened. One session uses it at a time; others may open it once more. */
 typedef struct cdl_Device cdl_Device;
 
 /* Opens the device that `selector` names: an index of the listing, or a part of a platform's or
@@ -124,6 +124,7 @@ typedef struct cdl_Session cdl_Session;
 typedef int (*cdl_Progress)(void *user, uint64_t samples_done, uint64_t samples_total,
                             double seconds);
 
+/* CDL_USAGE if another session uses the device: from here to cdl_session_free it is this one's. */
 cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
                               const cdl_Settings *settings, cdl_Session **session);
 

@@ -84,6 +84,16 @@ void device_close(cdl_Device *device) {
   free(device);
 }
 
+cdl_Status device_claim(cdl_Device *device, const cdl_Log *log) {
+  if (!__atomic_exchange_n(&device->claimed, 1, __ATOMIC_ACQUIRE)) return CDL_OK;
+  return log_fail(log, CDL_USAGE,
+                  "%s: another session uses this device; free that session first, or open the "
+                  "device once more",
+                  device->info.name);
+}
+
+void device_release(cdl_Device *device) { __atomic_store_n(&device->claimed, 0, __ATOMIC_RELEASE); }
+
 const cdl_DeviceInfo *device_info(const cdl_Device *device) { return &device->info; }
 cl_context device_context(const cdl_Device *device) { return device->context; }
 cl_command_queue device_queue(const cdl_Device *device) { return device->queue; }

@@ -66,6 +66,11 @@ cdl_Status device_open(const cdl_Log *log, const char *selector, cdl_Device **de
 /* Waits for the queue and frees everything; buffers must have been freed. NULL is fine. */
 void device_close(cdl_Device *device);
 
+/* One at a time may build kernels with options of its own and launch them. CDL_USAGE, reported to
+ * `log`, while another has it. */
+cdl_Status device_claim(cdl_Device *device, const cdl_Log *log);
+void device_release(cdl_Device *device);
+
 const cdl_DeviceInfo *device_info(const cdl_Device *device);
 cl_context device_context(const cdl_Device *device);
 cl_command_queue device_queue(const cdl_Device *device);

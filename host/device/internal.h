@@ -39,6 +39,7 @@ struct cdl_Device {
   double build_seconds;
   uint64_t allocated, peak_allocated;
   cdl_Observer observer;
+  int claimed; /* by device_claim(); atomic */
   int observed;
   int host_timed; /* timers are stubs */
   PendingLaunch pending[CDL_PENDING];

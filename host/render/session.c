@@ -134,6 +134,11 @@ cdl_Status cdl_session_create(const cdl_Log *log, cdl_Device *device, const cdl_
   if (status) return status;
   cdl_Session *s = calloc(1, sizeof *s);
   if (!s) return log_fail(log, CDL_DEVICE, "not enough memory for a session");
+  status = device_claim(device, log);
+  if (status) {
+    free(s);
+    return status;
+  }
   s->log = log;
   s->device = device;
   s->scene = scene;
@@ -164,6 +169,7 @@ void cdl_session_free(cdl_Session *session) {
   film_free(session->film);
   json_decref(session->job);
   json_decref(session->header);
+  device_release(session->device);
   free(session);
 }
 
