@@ -105,6 +105,8 @@ static cdl_Status check_arguments(const cdl_Device *device, cdl_KernelId id, cl_
                   kernel_name(id), kernel_rows[id].file, count, listed);
 }
 
+/* The largest power of two up to CDL_LOCAL_SIZE that the driver takes: ranges are multiples of
+ * CDL_LOCAL_SIZE, and a work-group must divide them. */
 size_t kernel_local_size(const cdl_Device *device, cl_kernel kernel) {
   size_t required[3] = {0}, most = 0;
   cl_device_id id = device->info.id;
@@ -112,7 +114,9 @@ size_t kernel_local_size(const cdl_Device *device, cl_kernel kernel) {
                            NULL);
   if (required[0]) return required[0];
   clGetKernelWorkGroupInfo(kernel, id, CL_KERNEL_WORK_GROUP_SIZE, sizeof most, &most, NULL);
-  return most && most < CDL_LOCAL_SIZE ? most : CDL_LOCAL_SIZE;
+  size_t size = CDL_LOCAL_SIZE;
+  while (most && size > most) size /= 2;
+  return size;
 }
 
 static size_t row_strip(const cdl_Device *device, int row) {
@@ -196,12 +200,26 @@ static cdl_Status build_kernel(cdl_Device *device, cdl_KernelId id, cl_kernel *k
   return status;
 }
 
+/* A work-group in strips does CDL_LOCAL_SIZE items, neither more nor fewer. */
+static cdl_Status local_size(const cdl_Device *device, cdl_KernelId id, cl_kernel kernel,
+                             size_t *size) {
+  const size_t most = kernel_local_size(device, kernel), strip = row_strip(device, id);
+  *size = strip > 1 ? CDL_LOCAL_SIZE / strip : most;
+  if (*size <= most) return CDL_OK;
+  return log_fail(device->log, CDL_DEVICE,
+                  "kernel %s needs work-groups of %zu items, but %s takes at most %zu; choose "
+                  "another device with --device",
+                  kernel_name(id), *size, device->info.name, most);
+}
+
 static cdl_Status build_slot(cdl_Device *device, cdl_KernelId id) {
   KernelSlot *slot = &device->kernels[id];
   cl_kernel kernel = NULL;
   double start = clock_now();
   cdl_Status status = build_kernel(device, id, &kernel);
   if (!status) status = check_arguments(device, id, kernel);
+  size_t local = 0;
+  if (!status) status = local_size(device, id, kernel, &local);
   double seconds = clock_now() - start;
   device->build_seconds += seconds;
   if (device->observed && device->observer.built)
@@ -213,8 +231,7 @@ static cdl_Status build_slot(cdl_Device *device, cdl_KernelId id) {
   memset(slot, 0, sizeof *slot);
   slot->kernel = kernel;
   slot->strip = row_strip(device, id);
-  slot->local_size = kernel_local_size(device, kernel);
-  if (slot->strip > 1) slot->local_size = CDL_LOCAL_SIZE / slot->strip;
+  slot->local_size = local;
   slot->argument_count = kernel_arguments(id)->count;
   return CDL_OK;
 }
