@@ -77,6 +77,12 @@ typedef enum cdl_Schedule {
   CDL_SCHEDULE_FUSED
 } cdl_Schedule;
 
+/* Limits of settings; see cdl_settings_check. */
+#define CDL_MAX_SIZE 65536u        /* pixels of a side */
+#define CDL_MAX_PIXELS 2147483648u /* of the full image */
+#define CDL_MAX_SAMPLES (1u << 24) /* of a pixel */
+#define CDL_MAX_DEPTH 4095u
+
 /* What to render. cdl_settings_default() fills it. */
 typedef struct cdl_Settings {
   uint32_t width, height; /* pixels of the full image; one of them 0: from the camera's aspect */

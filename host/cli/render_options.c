@@ -37,7 +37,7 @@ enum {
 };
 
 /* Samples of a render that only a time or a noise target ends. */
-enum { OPEN_ENDED_SAMPLES = 65536, MAX_SAMPLES = 1 << 24, MAX_SIZE = 65536 };
+enum { OPEN_ENDED_SAMPLES = 65536 };
 
 static const struct argp_option option_list[] = {
     {"output", 'o', "FILE", 0, "Write the picture: .exr .png .hdr .jpg .tif; may be repeated", 1},
@@ -83,8 +83,8 @@ static void parse_size(const char *text, cdl_Settings *settings) {
   snprintf(width, sizeof width, "%.*s", x ? (int)(x - text) : 15, text);
   settings->width = settings->height = 0;
   if (x && x - text >= (long)sizeof width) cli_usage("--size: '%s' is too large", text);
-  if (*width) settings->width = cli_uint("--size", width, 1, MAX_SIZE);
-  if (x && x[1]) settings->height = cli_uint("--size", x + 1, 1, MAX_SIZE);
+  if (*width) settings->width = cli_uint("--size", width, 1, CDL_MAX_SIZE);
+  if (x && x[1]) settings->height = cli_uint("--size", x + 1, 1, CDL_MAX_SIZE);
   if (!settings->width && !settings->height)
     cli_usage("--size: '%s' is not WxH, Wx or xH, such as 640x480", text);
 }
@@ -153,7 +153,7 @@ static int parse_picture(int key, const char *value, RenderOptions *options) {
     options->display.tonemap = tonemaps[cli_choice("--tonemap", value, tonemaps)];
     break;
   case KEY_SPP:
-    s->samples = cli_uint("--spp", value, 1, MAX_SAMPLES);
+    s->samples = cli_uint("--spp", value, 1, CDL_MAX_SAMPLES);
     break;
   case KEY_TIME:
     s->time_limit = cli_real("--time", value, 1e-3, 1e9);
@@ -168,7 +168,7 @@ static int parse_picture(int key, const char *value, RenderOptions *options) {
     s->seed = cli_uint("--seed", value, 0, UINT32_MAX);
     break;
   case KEY_MAX_DEPTH:
-    s->max_depth = cli_uint("--max-depth", value, 0, 4095);
+    s->max_depth = cli_uint("--max-depth", value, 0, CDL_MAX_DEPTH);
     break;
   default:
     return 0;

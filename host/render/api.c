@@ -15,7 +15,7 @@
 
 /* Channels of a part's file: beyond this, OpenEXR files are slow to open and some readers refuse.
  */
-enum { MAX_PART_CHANNELS = 1000, MAX_DEPTH = 4095 };
+enum { MAX_PART_CHANNELS = 1000 };
 #define MAX_ENVIRONMENT_BYTES ((size_t)1 << 30)
 
 /* --- Scenes. What changes a scene changes its hash, which says whether two renders are of the
@@ -123,6 +123,8 @@ static uint32_t stored_channels(uint32_t aovs) {
 static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
   const uint32_t first = s->first_sample, count = s->sample_count;
   if (!s->samples) return log_fail(log, CDL_USAGE, "--spp must be at least 1");
+  if (s->samples > CDL_MAX_SAMPLES)
+    return log_fail(log, CDL_USAGE, "--spp: %u is more than %u", s->samples, CDL_MAX_SAMPLES);
   if (first % CDL_FILM_BLOCK)
     return log_fail(log, CDL_USAGE, "--samples: %u is not a multiple of %u", first, CDL_FILM_BLOCK);
   if (first >= s->samples)
@@ -144,16 +146,28 @@ static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
   return CDL_OK;
 }
 
+cdl_Status settings_check_size(const cdl_Log *log, uint32_t width, uint32_t height) {
+  if (!width && !height) return log_fail(log, CDL_USAGE, "--size: width and height are both 0");
+  if (width > CDL_MAX_SIZE || height > CDL_MAX_SIZE)
+    return log_fail(log, CDL_USAGE, "--size: %ux%u has more than %u pixels on a side", width,
+                    height, CDL_MAX_SIZE);
+  if ((uint64_t)width * height > CDL_MAX_PIXELS)
+    return log_fail(log, CDL_USAGE, "--size: %ux%u has more than %u pixels", width, height,
+                    CDL_MAX_PIXELS);
+  return CDL_OK;
+}
+
 cdl_Status cdl_settings_check(const cdl_Log *log, const cdl_Settings *s) {
-  cdl_Status status = check_samples(log, s);
+  cdl_Status status = settings_check_size(log, s->width, s->height);
+  if (!status) status = check_samples(log, s);
   if (status) return status;
   if (s->schedule == CDL_SCHEDULE_FUSED)
     return log_fail(log, CDL_USAGE, "--schedule: this version has auto and wavefront, not fused");
   if (s->bvh_width && s->bvh_width != 2 && s->bvh_width != 8)
     return log_fail(log, CDL_USAGE, "--bvh %u: there are auto, 2 and 8", s->bvh_width);
   if (s->fast_math) return log_fail(log, CDL_USAGE, "--math: this version has exact, not fast");
-  if (s->max_depth > MAX_DEPTH)
-    return log_fail(log, CDL_USAGE, "--max-depth: %u is more than %d", s->max_depth, MAX_DEPTH);
+  if (s->max_depth > CDL_MAX_DEPTH)
+    return log_fail(log, CDL_USAGE, "--max-depth: %u is more than %u", s->max_depth, CDL_MAX_DEPTH);
   if (!(s->time_limit >= 0) || !isfinite(s->time_limit))
     return log_fail(log, CDL_USAGE, "--time must be finite and not negative");
   if (!(s->noise_target >= 0) || !isfinite(s->noise_target))

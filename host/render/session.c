@@ -37,6 +37,8 @@ static cdl_Status resolve_settings(cdl_Session *session, const cdl_SceneCamera *
   cdl_Status status = camera_find(session->log, session->scene, s->camera, camera);
   if (status) return status;
   camera_image_size(*camera, &s->width, &s->height);
+  status = settings_check_size(session->log, s->width, s->height);
+  if (status) return status;
   if (!s->sample_count) s->sample_count = s->samples - s->first_sample;
   status = resolve_crop(session->log, s);
   text_copy(session->camera, sizeof session->camera, (*camera)->name);

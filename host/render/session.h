@@ -44,4 +44,8 @@ struct cdl_Session {
  * the members of these names. */
 int session_begins_at(const cdl_Session *session, uint32_t next_block, uint32_t next_pixel);
 
+/* CDL_USAGE for more pixels than cdl_settings_check() allows; one number may be 0: not known yet.
+ */
+cdl_Status settings_check_size(const cdl_Log *log, uint32_t width, uint32_t height);
+
 #endif

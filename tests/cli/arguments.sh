@@ -75,6 +75,7 @@ done
 for value in 0x4 4x0 x axb 4 4x4x4 -4x4 65537x4 4xx; do
   [ "$value" = 4 ] || render "--size: " -o x.png "--size=$value"
 done
+render "65536x65536 has more than 2147483648 pixels" -o x.png --size 65536x65536
 for value in 1,2,3 1,2,3,4,5 1,2,0,4 1,2,3,0 -1,2,3,4 1,,3,4 "" 1,2,3,4x; do
   render "--crop: '$value'" -o x.png "--crop=$value"
 done
