@@ -66,13 +66,20 @@ static const cdl_Image *texture_image(const cdl_Scene *scene, uint32_t texture,
   return image != CDL_NONE && scene->images[image] ? scene->images[image] : white;
 }
 
+/* Images of environments, and those that nothing refers to any more, are no textures. */
+static int is_texture(const cdl_Scene *scene, uint32_t image) {
+  if (!scene->images[image]) return 0;
+  for (uint32_t i = 0; i < scene->texture_count; i++)
+    if (scene->textures[i].image == image) return 1;
+  return 0;
+}
+
 static cdl_Status pack_all_images(const cdl_Log *log, const cdl_Scene *scene,
                                   const cdl_Image *white, cdl_Pack *pack) {
   size_t(*first)[2] = pack_array(log, "images", scene->image_count + 1u, sizeof *first);
   if (!first) return CDL_BAD_INPUT;
   for (uint32_t i = 0; i < scene->image_count; i++)
-    if (scene->images[i] && i != scene->environment.image)
-      pack_image(scene->images[i], pack, first[i]);
+    if (is_texture(scene, i)) pack_image(scene->images[i], pack, first[i]);
   size_t *white_first = first[scene->image_count];
   pack_image(white, pack, white_first);
   for (uint32_t i = 0; i < scene->texture_count; i++) {
@@ -91,7 +98,7 @@ cdl_Status pack_textures(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *p
   const cdl_Image white = {.width = 1, .height = 1, .channels = 4, .encoded = 1, .u8 = white_texel};
   size_t words = 1;
   for (uint32_t i = 0; i < scene->image_count; i++)
-    if (scene->images[i] && i != scene->environment.image) words += image_words(scene->images[i]);
+    if (is_texture(scene, i)) words += image_words(scene->images[i]);
   if (words > UINT32_MAX)
     return log_fail(
         log, CDL_BAD_INPUT,
