@@ -12,7 +12,7 @@
 #include "render/job.h"
 #include "render/picture.h"
 #include "render/wavefront.h"
-#include "scene/pack_parts.h"
+#include "scene/pack.h"
 
 /* Paths of a wave: enough to keep a device busy and few enough to stay near its caches. The same
  * for every device, so that a render can be resumed on another one. */

@@ -52,6 +52,9 @@ typedef struct cdl_Pack {
  * failure. */
 cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
 
+/* Radius of the sphere around the world's bounds, m. */
+double pack_scene_radius(const cdl_Pack *pack);
+
 /* Frees and zeroes it; fine for an all-zero one. */
 void pack_free(cdl_Pack *pack);
 

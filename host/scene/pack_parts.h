@@ -20,7 +20,4 @@ cdl_Status pack_environment(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack
 cdl_Status pack_lights(const cdl_Log *log, const cdl_Scene *scene, double environment_power,
                        cdl_Pack *pack);
 
-/* Radius of the sphere around the world's bounds, m. */
-double pack_scene_radius(const cdl_Pack *pack);
-
 #endif
