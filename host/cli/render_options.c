@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "cli/cli.h"
+#include "image/image_write.h"
 
 enum {
   KEY_SIZE = 256,
@@ -259,14 +260,9 @@ static const struct argp parser = {
     NULL,
     NULL};
 
-static int is_exr(const char *path) {
-  const size_t length = strlen(path);
-  return length >= 4 && !strcasecmp(path + length - 4, ".exr");
-}
-
 static int writes_exr(const RenderOptions *options) {
   for (int i = 0; i < options->output_count; i++)
-    if (is_exr(options->outputs[i])) return 1;
+    if (image_is_exr(options->outputs[i])) return 1;
   return 0;
 }
 

@@ -5,9 +5,7 @@
 
 #include "core/log.h"
 
-static size_t film_pixels(const cdl_Film *film) { return (size_t)film->width * film->height; }
-
-static uint32_t stored_channels(uint32_t aovs) {
+uint32_t film_channels(uint32_t aovs) {
   uint32_t channels = 0;
   for (int i = 0; i < CDL_AOV_COUNT; i++)
     if (aovs & AOV_BIT(i) && aov_table[i].rule != CDL_AOV_STATISTIC)
@@ -24,7 +22,7 @@ cdl_Status film_create(const cdl_Log *log, uint32_t width, uint32_t height, uint
   f->width = width;
   f->height = height;
   f->aovs = (aovs & AOV_ALL) | AOV_BIT(CDL_AOV_BEAUTY);
-  f->channels = stored_channels(f->aovs);
+  f->channels = film_channels(f->aovs);
   f->keep_blocks = keep_blocks;
   const size_t pixels = film_pixels(f);
   f->sums = calloc(pixels * f->channels, sizeof *f->sums);
@@ -120,7 +118,7 @@ cdl_Status film_add(cdl_Film *film, uint32_t block, uint32_t samples, uint32_t f
 
 int film_channel(const cdl_Film *film, cdl_AovId aov) {
   if (!(film->aovs & AOV_BIT(aov)) || aov_table[aov].rule == CDL_AOV_STATISTIC) return -1;
-  return (int)stored_channels(film->aovs & (AOV_BIT(aov) - 1u));
+  return (int)film_channels(film->aovs & (AOV_BIT(aov) - 1u));
 }
 
 uint32_t film_complete_parts(const cdl_Film *film) {

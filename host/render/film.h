@@ -39,6 +39,13 @@ typedef struct cdl_Film {
   int keep_blocks;
 } cdl_Film;
 
+static inline size_t film_pixels(const cdl_Film *film) {
+  return (size_t)film->width * film->height;
+}
+
+/* Channels of `sums` that these AOVs take. */
+uint32_t film_channels(uint32_t aovs);
+
 /* `aovs` as in cdl_Settings. The film keeps `log`. CDL_DEVICE if memory is short. */
 cdl_Status film_create(const cdl_Log *log, uint32_t width, uint32_t height, uint32_t aovs,
                        int keep_blocks, cdl_Film **film);

@@ -9,8 +9,6 @@
 #include "core/hash.h"
 #include "core/log.h"
 
-static size_t film_pixels(const cdl_Film *film) { return (size_t)film->width * film->height; }
-
 /* One rounding from the exact quotient's double: the same on every host. */
 static void resolve_means(const cdl_Film *film, uint32_t channel, int channels, float *out) {
   const size_t pixels = film_pixels(film);
