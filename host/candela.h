@@ -47,8 +47,9 @@ cdl_Status cdl_scene_load(const cdl_Log *log, const char *path, double time, cdl
 /* Replaces the scene's environment by an image file (latitude-longitude), NULL to keep it. */
 cdl_Status cdl_scene_set_environment(cdl_Scene *scene, const cdl_Log *log, const char *path);
 
-/* Multiplies the environment's radiance; finite and >= 0. */
-void cdl_scene_set_environment_strength(cdl_Scene *scene, float strength);
+/* Multiplies the environment's radiance. CDL_USAGE, and nothing changed, unless the factor is
+ * finite and >= 0 and the brightest direction stays finite. */
+cdl_Status cdl_scene_set_environment_strength(cdl_Scene *scene, const cdl_Log *log, float strength);
 
 /* Replaces the scene's environment by a constant radiance. */
 void cdl_scene_set_background(cdl_Scene *scene, const float radiance[3]);

@@ -39,8 +39,8 @@ static cdl_Status load_scene(Render *r) {
   if (status) return status;
   if (o->has_background) cdl_scene_set_background(r->scene, o->background);
   if (o->environment_strength != 1)
-    cdl_scene_set_environment_strength(r->scene, (float)o->environment_strength);
-  return CDL_OK;
+    status = cdl_scene_set_environment_strength(r->scene, &cli_log, (float)o->environment_strength);
+  return status;
 }
 
 static cdl_Status start_session(Render *r) {

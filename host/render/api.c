@@ -77,9 +77,30 @@ cdl_Status cdl_scene_set_environment(cdl_Scene *scene, const cdl_Log *log, const
   return status;
 }
 
-void cdl_scene_set_environment_strength(cdl_Scene *scene, float strength) {
+/* The largest value of a channel, without the strength. */
+static float environment_peak(const cdl_Scene *scene) {
+  const cdl_SceneEnvironment *e = &scene->environment;
+  const cdl_Image *image = e->image == CDL_NONE ? NULL : scene->images[e->image];
+  const size_t values = image && image->f32 ? 4 * (size_t)image->width * (size_t)image->height : 0;
+  float peak = image && !image->f32 ? 1 : 0;
+  for (size_t i = 0; i < values; i++)
+    if (i % 4 != 3 && isfinite(image->f32[i])) peak = fmaxf(peak, image->f32[i]);
+  if (image) return peak;
+  for (int c = 0; c < 3; c++) peak = fmaxf(peak, e->radiance[c]);
+  return peak;
+}
+
+cdl_Status cdl_scene_set_environment_strength(cdl_Scene *scene, const cdl_Log *log,
+                                              float strength) {
+  const float product = scene->environment.strength * strength;
+  if (!isfinite(strength) || strength < 0)
+    return log_fail(log, CDL_USAGE, "--env-strength %g: must be finite and not negative", strength);
+  if (!isfinite(product) || !isfinite(product * environment_peak(scene)))
+    return log_fail(log, CDL_USAGE, "--env-strength %g: makes the environment of %s infinite",
+                    strength, scene->path);
   scene->environment.strength *= strength;
   rehash(scene, "strength", &strength, sizeof strength);
+  return CDL_OK;
 }
 
 void cdl_scene_set_background(cdl_Scene *scene, const float radiance[3]) {
@@ -112,14 +133,6 @@ const char *cdl_aov_name(unsigned index, const char **meaning) {
   return aov_table[index].name;
 }
 
-static uint32_t stored_channels(uint32_t aovs) {
-  uint32_t channels = 0;
-  for (int i = 0; i < CDL_AOV_COUNT; i++)
-    if ((aovs | AOV_BIT(CDL_AOV_BEAUTY)) & AOV_BIT(i) && aov_table[i].rule != CDL_AOV_STATISTIC)
-      channels += (uint32_t)aov_table[i].channels;
-  return channels;
-}
-
 static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
   const uint32_t first = s->first_sample, count = s->sample_count;
   if (!s->samples) return log_fail(log, CDL_USAGE, "--spp must be at least 1");
@@ -137,7 +150,8 @@ static cdl_Status check_samples(const cdl_Log *log, const cdl_Settings *s) {
                     "--samples: %u is not a multiple of %u, nor the rest of --spp %u", count,
                     CDL_FILM_BLOCK, s->samples);
   if (first || count) {
-    const uint32_t most = MAX_PART_CHANNELS / stored_channels(s->aovs) * CDL_FILM_BLOCK;
+    const uint32_t most =
+        MAX_PART_CHANNELS / film_channels(s->aovs | AOV_BIT(CDL_AOV_BEAUTY)) * CDL_FILM_BLOCK;
     const uint32_t wanted = count ? count : s->samples - first;
     if (wanted > most)
       return log_fail(log, CDL_USAGE, "--samples: a part of these AOVs holds at most %u samples",

@@ -144,6 +144,8 @@ check "no such camera" run 2 render sheet.gltf -o x.png --camera nobody
 check "no such device" run 2 render sheet.gltf -o x.png --device nobody
 check "a crop outside" run 2 render sheet.gltf -o x.png --size 8x8 --crop 4,4,8,8
 check "no such environment" run 3 render sheet.gltf -o x.png --env none.hdr
+check "an infinite environment" run 2 render sheet.gltf -o x.png --background 10,1,1 \
+  --env-strength 1e38
 check "leave no file" test ! -e x.png
 check "no temporary file stays" test -z "$(find . -name '*.tmp*' -o -name '.*.exr*')"
 
