@@ -12,7 +12,7 @@ VERSION := $(shell sed -n 's/^.define CDL_VERSION "\(.*\)"/\1/p' host/candela.h)
 .DELETE_ON_ERROR:
 .SUFFIXES:
 .PHONY: deps all demo test bench check soak install clean \
-  run-demo run-test run-bench run-check run-soak run-unit format-check lint tests
+  run-demo run-test run-bench run-check run-soak run-host format-check lint tests
 
 ifeq ($(MAKELEVEL),0)
 # A -j on the command line wins.
@@ -99,7 +99,8 @@ $(B)/candela: $(CLI_OBJECTS) $(B)/libcandela.a
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/%.c=$(B)/tests/%)
 TEST_SCRIPTS := $(filter-out %/common.sh %/common.py,$(wildcard tests/*/*.sh tests/*/*.py))
-UNIT_PROGRAMS := $(filter $(B)/tests/unit/%,$(TEST_PROGRAMS))
+# What needs no device: the programs that the sanitizers watch.
+HOST_PROGRAMS := $(filter $(B)/tests/unit/% $(B)/tests/bad_input/%,$(TEST_PROGRAMS))
 test_helpers = $(patsubst %,$(B)/obj/%.o,$(filter-out tests/$(1)/test_%,$(wildcard tests/$(1)/*.c)))
 
 tests: $(TEST_PROGRAMS)
@@ -122,8 +123,8 @@ run-soak: all tests
 	@CDL_SOAK=1 TEST_TIMEOUT=7200 CANDELA=$(B)/candela \
 	  tests/run.sh $(B)/tests $(TEST_PROGRAMS) $(TEST_SCRIPTS)
 
-run-unit: $(UNIT_PROGRAMS)
-	@tests/run.sh $(B)/tests $(UNIT_PROGRAMS)
+run-host: $(HOST_PROGRAMS)
+	@tests/run.sh $(B)/tests $(HOST_PROGRAMS)
 
 # --- Benchmarks: scripts/bench_NAME.c(pp) is a program that may use Embree.
 
@@ -154,7 +155,7 @@ lint:
 	  --suppress=uninitvar:host/bvh/tree.c -Ihost -Ikernels $(wildcard host/*/*.c)
 
 run-check: format-check lint
-	@OMP_NUM_THREADS=2 $(MAKE) --no-print-directory B=$(B)/asan SANITIZE=address,undefined run-unit
+	@OMP_NUM_THREADS=2 $(MAKE) --no-print-directory B=$(B)/asan SANITIZE=address,undefined run-host
 
 # --- A picture.
 
