@@ -50,11 +50,12 @@ void camera_params(const cdl_SceneCamera *camera, uint32_t width, uint32_t heigh
                    cdl_CameraParams *params) {
   double aspect = (double)width / height;
   double half = camera->orthographic ? camera->ymag : tan(0.5 * camera->yfov);
-  *params = (cdl_CameraParams){.scale = {(float)(half * aspect), (float)half},
-                               .lens_radius = camera->aperture_radius,
-                               .inverse_focus = camera->focus_distance > 0.0f ? 1.0f / camera->focus_distance : 1.0f,
-                               .orthographic = camera->orthographic != 0,
-                               .blades = camera->blades ? camera->blades : 1};
+  *params = (cdl_CameraParams){
+      .scale = {(float)(half * aspect), (float)half},
+      .lens_radius = camera->aperture_radius,
+      .inverse_focus = camera->focus_distance > 0.0f ? 1.0f / camera->focus_distance : 1.0f,
+      .orthographic = camera->orthographic != 0,
+      .blades = camera->blades ? camera->blades : 1};
   params->blade_cos = (float)cos(M_PI / params->blades);
   params->blade_sin = (float)sin(M_PI / params->blades);
   memcpy(params->to_world, camera->to_world, sizeof params->to_world);
