@@ -24,8 +24,10 @@ CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, 
     int repeated = hit_repeats(hit, last, direction, instances, triangles, shapes, attributes);
     CDL_GLOBAL const cdl_Material *material =
         materials + shapes[triangles[hit.primitive].shape].material;
-    int boundary =
-        material->model == CDL_MODEL_INTERFACE || material->model == CDL_MODEL_DIELECTRIC;
+    /* Opaque surfaces count where they hold a medium: without one, nothing says that they are
+     * closed. */
+    int boundary = material->model == CDL_MODEL_INTERFACE ||
+                   material->model == CDL_MODEL_DIELECTRIC || material->medium != CDL_MEDIUM_VACUUM;
     if (boundary && !repeated)
       stack = hit_crossed(hit, stack, direction, material->medium, instances, triangles, shapes,
                           attributes);
