@@ -10,8 +10,7 @@
 
 /* How far a shadow ray goes: short of the light, which would else shadow its own points, by some
  * hundred units in the last place of the coordinates there. */
-CDL_INLINE float shadow_reach(vec3 origin, vec3 direction, float distance) {
-  vec3 target = v3_madd(origin, distance, direction);
+CDL_INLINE float shadow_reach(vec3 origin, vec3 target, float distance) {
   float size = math_max(math_max(math_abs(origin.x), math_abs(target.x)),
                         math_max(math_abs(origin.y), math_abs(target.y)));
   size = math_max(size, math_max(math_abs(origin.z), math_abs(target.z)));
@@ -44,7 +43,14 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
   vec3 origin = state_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i);
   vec3 direction = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float distance = state_float(work, CDL_WORK_LIGHT_DISTANCE, stride, i);
-  float reach = shadow_reach(origin, direction, distance);
+  /* The ray begins beside the vertex, and still ends at the very point of the light. */
+  vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
+  vec3 target = v3_madd(position, distance, direction);
+  if (distance < CDL_INFINITY) {
+    direction = v3_normalize(v3_sub(target, origin));
+    distance = v3_length(v3_sub(target, origin));
+  }
+  float reach = shadow_reach(origin, target, distance);
   if (bvh_occluded(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin, direction,
                    reach, CDL_MASK_OPAQUE))
     return;
