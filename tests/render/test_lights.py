@@ -166,7 +166,7 @@ def test_textured_emission():
     def irradiance(p):
         red, blue = (8 * polygon_irradiance(p, up(p), polygons(half)) for half in (left, right))
         return np.stack([red, 0 * red, blue], 1)
-    compare("a textured lamp", s, irradiance, 768)
+    compare("a textured lamp", s, irradiance, 1024)
 
 
 def test_mirrored_and_instanced_lamps():
