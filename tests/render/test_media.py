@@ -95,6 +95,17 @@ def test_camera_inside():
               straight(s, (0, 0, 1), (0, 0, 0)), beer(RED, 3))
 
 
+def test_wide_cameras():
+    """A camera that stands on a boundary knows for every ray on which side it begins."""
+    s = stage()
+    s.add(box((0, -9, -3), (9, 9, 3)), s.interface({"absorption": RED}))
+    s.camera(look_at((0.0001, 0, 1), (0.0001, 0, 0)), half_height=1)
+    picture = render(s, (16, 16), 32, 0)
+    want = np.ones((16, 16, 3))
+    want[:, 8:] = beer(RED, 4)
+    exact("half of a camera in a medium", picture, want)
+
+
 def test_overlapping_media():
     """The one entered last counts; leaving one leaves the other."""
     s = stage()
@@ -244,6 +255,6 @@ def test_interface_of_nothing():
 
 if __name__ == "__main__":
     main(test_absorbing_slab, test_scale_of_the_node, test_shadow_through_media, test_camera_inside,
-         test_overlapping_media, test_touching_media, test_medium_of_the_scene, test_glowing_medium,
-         test_single_scattering, test_forward_scattering, test_white_medium, test_glass_slab,
-         test_glass_ball, test_interface_of_nothing)
+         test_wide_cameras, test_overlapping_media, test_touching_media, test_medium_of_the_scene,
+         test_glowing_medium, test_single_scattering, test_forward_scattering, test_white_medium,
+         test_glass_slab, test_glass_ball, test_interface_of_nothing)
