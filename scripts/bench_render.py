@@ -102,7 +102,7 @@ def cores(scenes):
         with tempfile.TemporaryDirectory() as folder:
             for run in range(RUNS + 1):
                 for count in times:
-                    stats = render(scene, folder, {"POCL_MAX_PTHREAD_COUNT": count})
+                    stats = render(scene, folder, {"POCL_MAX_PTHREAD_COUNT": count}, ["--spp", "64"])
                     times[count] += [stats["times"]["render_s"]] if run else []
         one, two = (statistics.median(times[count]) for count in times)
         rows.append([scene.name, f"{one:.2f}", f"{two:.2f}", f"{one / two:.2f}"])

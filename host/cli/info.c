@@ -51,15 +51,6 @@ typedef struct Totals {
   uint32_t emissive;
 } Totals;
 
-static const char *const models[CDL_MODEL_COUNT] = {[CDL_MODEL_UNLIT] = "unlit",
-                                                    [CDL_MODEL_MIRROR] = "mirror",
-                                                    [CDL_MODEL_DIELECTRIC] = "dielectric",
-                                                    [CDL_MODEL_DIFFUSE] = "diffuse",
-                                                    [CDL_MODEL_CONDUCTOR] = "conductor",
-                                                    [CDL_MODEL_RETROREFLECTOR] = "retroreflector",
-                                                    [CDL_MODEL_GLTF] = "gltf",
-                                                    [CDL_MODEL_INTERFACE] = "interface"};
-
 static uint64_t mesh_memory(const cdl_SceneMesh *mesh) {
   uint64_t floats = 3 + 3 * !!mesh->normals + 4 * !!mesh->tangents + 2 * !!mesh->uv[0] +
                     2 * !!mesh->uv[1] + 4 * !!mesh->colors;
@@ -97,7 +88,7 @@ static json_t *json_of_materials(const struct cdl_Scene *scene) {
   json_t *list = json_array();
   for (uint32_t i = 0; i < scene->material_count; i++)
     json_array_append_new(list, json_pack("{s:s, s:s}", "name", scene->materials[i].name, "model",
-                                          models[scene->materials[i].model]));
+                                          scene_model_name(scene->materials[i].model)));
   return list;
 }
 
@@ -196,7 +187,7 @@ static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
            named(scene->cameras[i].name));
   printf("materials\n");
   for (uint32_t i = 0; i < scene->material_count; i++)
-    printf("  %2u  %-14s %s\n", i, models[scene->materials[i].model],
+    printf("  %2u  %-14s %s\n", i, scene_model_name(scene->materials[i].model),
            named(scene->materials[i].name));
 }
 

@@ -80,6 +80,9 @@ static cdl_Status gather(cdl_Wavefront *w) {
   if (w->features.environment)
     status = run_queues(w, CDL_KERNEL_escape, CDL_QUEUE_ESCAPED, CDL_QUEUE_ESCAPED);
   if (!status) status = run_queues(w, CDL_KERNEL_surface, CDL_QUEUE_PASS, last_surface);
+  if (!status)
+    status = run_queues(w, CDL_KERNEL_parameters, CDL_QUEUE_MODELS + 2 * CDL_MODEL_FIRST_PARAMETERS,
+                        CDL_QUEUE_MODELS + 2 * CDL_MODEL_LAST_PARAMETERS + 1);
   if (!status && w->has_aovs)
     status = run_queues(w, CDL_KERNEL_first_hit, CDL_QUEUE_MODELS, last_surface);
   return status ? status : emit(w);

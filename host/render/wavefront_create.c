@@ -26,6 +26,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
+  add_option(options, sizeof options, f->coat_normals, "CDL_COAT_NORMALS");
   add_option(options, sizeof options, w->has_lights, "CDL_LIGHTS");
   add_option(options, sizeof options, f->triangle_lights, "CDL_TRIANGLE_LIGHTS");
   add_option(options, sizeof options, f->punctual_lights, "CDL_PUNCTUAL_LIGHTS");
@@ -40,6 +41,13 @@ typedef struct KernelList {
 
 static void list_add(KernelList *list, int wanted, cdl_KernelId id) {
   if (wanted) list->ids[list->count++] = id;
+}
+
+static int has_parameters(const int *models) {
+  int any = 0;
+  for (uint32_t i = CDL_MODEL_FIRST_PARAMETERS; i <= CDL_MODEL_LAST_PARAMETERS; i++)
+    any |= models[i];
+  return any;
 }
 
 /* In the order of their first use. */
@@ -61,6 +69,7 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   list_add(list, 1, CDL_KERNEL_queue_move);
   list_add(list, f->environment, CDL_KERNEL_escape);
   list_add(list, 1, CDL_KERNEL_surface);
+  list_add(list, has_parameters(models), CDL_KERNEL_parameters);
   list_add(list, w->has_aovs, CDL_KERNEL_first_hit);
   list_add(list, emissive, CDL_KERNEL_emit);
   list_add(list, f->media, CDL_KERNEL_medium_vertex);
@@ -125,6 +134,8 @@ static cdl_Status upload_scene(cdl_Wavefront *w, const cdl_Pack *pack) {
       {BUFFER_shapes, pack->shapes, pack->shape_count * sizeof *pack->shapes},
       {BUFFER_attributes, pack->attributes, pack->attribute_count * sizeof *pack->attributes},
       {BUFFER_materials, pack->materials, pack->material_count * sizeof *pack->materials},
+      {BUFFER_param_textures, pack->param_textures,
+       pack->param_texture_count * sizeof *pack->param_textures},
       {BUFFER_textures, pack->textures, pack->texture_count * sizeof *pack->textures},
       {BUFFER_texels, pack->texels, pack->texel_count * sizeof *pack->texels},
       {BUFFER_srgb, pack->srgb, sizeof pack->srgb},

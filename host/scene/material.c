@@ -2,36 +2,37 @@
  * rendered. */
 #include <string.h>
 
-#include "scene/build.h"
+#include "scene/material_params.h"
+
+static const ParamMember metallic_roughness[] = {
+    {"metallicFactor", CDL_GLTF_METALLIC, 1, {1}, "metallicRoughnessTexture", CHANNEL_B},
+    {"roughnessFactor", CDL_GLTF_ROUGHNESS, 1, {1}, "metallicRoughnessTexture", CHANNEL_G},
+    {.name = NULL}};
+static const ParamMember ior[] = {{"ior", CDL_GLTF_IOR, 1, {1.5f}, NULL, 0}, {.name = NULL}};
 
 static cdl_SceneMaterial material_default(void) {
   cdl_TextureRef none = texture_ref_none();
-  return (cdl_SceneMaterial){.model = CDL_MODEL_GLTF,
-                             .alpha_cutoff = 0.5f,
-                             .base = {1, 1, 1, 1},
-                             .metallic = 1,
-                             .roughness = 1,
-                             .ior = 1.5f,
-                             .normal_scale = 1,
-                             .medium = CDL_NONE,
-                             .base_texture = none,
-                             .metallic_roughness_texture = none,
-                             .alpha_texture = none,
-                             .normal_texture = none,
-                             .emission_texture = none,
-                             .transmission_texture = none};
+  return (cdl_SceneMaterial){
+      .model = CDL_MODEL_GLTF,
+      .alpha_cutoff = 0.5f,
+      .base = {1, 1, 1, 1},
+      .param = {[CDL_GLTF_METALLIC] = 1, [CDL_GLTF_ROUGHNESS] = 1, [CDL_GLTF_IOR] = 1.5f},
+      .normal_scale = 1,
+      .coat_normal_scale = 1,
+      .medium = CDL_NONE,
+      .base_texture = none,
+      .normal_texture = none,
+      .coat_normal_texture = none,
+      .emission_texture = none};
 }
 
 static cdl_Status read_pbr(Builder *builder, const char *at, const json_t *pbr,
                            cdl_SceneMaterial *material) {
   json_get_numbers(pbr, "baseColorFactor", 4, material->base);
-  material->metallic = (float)json_get_number(pbr, "metallicFactor", 1);
-  material->roughness = (float)json_get_number(pbr, "roughnessFactor", 1);
-  cdl_Status status = build_texture_ref(builder, at, json_object_get(pbr, "baseColorTexture"),
-                                        &material->base_texture);
+  cdl_Status status = build_params(builder, at, pbr, metallic_roughness, material);
   if (status) return status;
-  return build_texture_ref(builder, at, json_object_get(pbr, "metallicRoughnessTexture"),
-                           &material->metallic_roughness_texture);
+  return build_texture_ref(builder, at, json_object_get(pbr, "baseColorTexture"),
+                           &material->base_texture);
 }
 
 static cdl_AlphaMode alpha_mode(const char *name) {
@@ -65,19 +66,25 @@ static cdl_Status read_core(Builder *builder, const char *at, const json_t *json
  * metallic stays with the plain material: its transmission is not supported. */
 static cdl_Status map_transmission(Builder *builder, uint32_t index, const json_t *json,
                                    cdl_SceneMaterial *material) {
+  const json_t *transmission = json_get_extension(json, "KHR_materials_transmission");
   const json_t *volume = json_get_extension(json, "KHR_materials_volume");
-  if (material->transmission == 0) return CDL_OK;
-  int textured = material->transmission_texture.texture != CDL_NONE ||
-                 material->metallic_roughness_texture.texture != CDL_NONE;
-  if (material->transmission < 1 || material->roughness > 0 || material->metallic > 0 || textured) {
+  double factor = json_get_number(transmission, "transmissionFactor", 0);
+  float index_of_refraction = material->param[CDL_GLTF_IOR];
+  int textured =
+      json_object_get(transmission, "transmissionTexture") != NULL || material->texture_count > 0;
+  int plain = material->param[CDL_GLTF_ROUGHNESS] <= 0 && material->param[CDL_GLTF_METALLIC] <= 0;
+  if (factor <= 0) return CDL_OK;
+  if (factor < 1 || !plain || textured) {
     document_note(builder->doc, NULL, AT("/materials/%u", index),
                   "transmission that is rough, partial, metallic or textured is not supported; "
                   "the surface is opaque.");
     return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
   }
   material->model = CDL_MODEL_DIELECTRIC;
+  material->transmits = 1;
+  material->param[CDL_DIELECTRIC_IOR] = index_of_refraction;
   material->thin = json_get_number(volume, "thicknessFactor", 0) <= 0;
-  if (!material->thin) return CDL_OK;
+  if (!material->thin) return build_volume(builder, volume, &material->medium);
   document_note(builder->doc, NULL, AT("/materials/%u", index),
                 "thin-walled glass is not supported; it is rendered as a solid.");
   return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
@@ -85,17 +92,9 @@ static cdl_Status map_transmission(Builder *builder, uint32_t index, const json_
 
 static cdl_Status read_khr(Builder *builder, uint32_t index, const json_t *json,
                            cdl_SceneMaterial *material) {
-  const char *at = AT("/materials/%u", index);
-  const json_t *transmission = json_get_extension(json, "KHR_materials_transmission");
-  const json_t *volume = json_get_extension(json, "KHR_materials_volume");
-  material->ior = (float)json_get_number(json_get_extension(json, "KHR_materials_ior"), "ior", 1.5);
-  material->transmission = (float)json_get_number(transmission, "transmissionFactor", 0);
-  cdl_Status status =
-      build_texture_ref(builder, at, json_object_get(transmission, "transmissionTexture"),
-                        &material->transmission_texture);
+  cdl_Status status = build_params(builder, AT("/materials/%u/extensions/KHR_materials_ior", index),
+                                   json_get_extension(json, "KHR_materials_ior"), ior, material);
   if (!status) status = map_transmission(builder, index, json, material);
-  if (!status && volume && material->model == CDL_MODEL_DIELECTRIC && !material->thin)
-    status = build_volume(builder, volume, &material->medium);
   if (json_get_extension(json, "KHR_materials_unlit")) material->model = CDL_MODEL_UNLIT;
   return status;
 }

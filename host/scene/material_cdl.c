@@ -1,24 +1,41 @@
 /* material_cdl.c: CDL_material, which replaces glTF's own shading. */
 #include <string.h>
 
-#include "scene/build.h"
+#include "scene/material_params.h"
+
+#define ALPHA(word, value)                                                                         \
+  { "alpha", word, 2, {value, value}, "alphaTexture", CHANNEL_R }
+#define END                                                                                        \
+  { .name = NULL }
+
+static const ParamMember none[] = {END};
+static const ParamMember conductor[] = {ALPHA(CDL_CONDUCTOR_ALPHA, 0),
+                                        {"eta", CDL_CONDUCTOR_ETA, 3, {0}, NULL, 0},
+                                        {"k", CDL_CONDUCTOR_K, 3, {0}, NULL, 0},
+                                        END};
+static const ParamMember dielectric[] = {{"ior", CDL_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0}, END};
+static const ParamMember retroreflector[] = {ALPHA(CDL_RETROREFLECTOR_ALPHA, 0.05f),
+                                             {"ior", CDL_RETROREFLECTOR_IOR, 1, {1.5f}, NULL, 0},
+                                             END};
 
 typedef struct Model {
   const char *name;
   uint32_t model;
-  float base;          /* the colour's default */
-  float alpha;         /* alpha's default */
-  const char *colour;  /* the member that holds the colour, or NULL */
+  const char *color;   /* the member that holds the base colour, or NULL */
   const char *texture; /* and its texture */
+  float base;          /* its default */
+  const ParamMember *members;
 } Model;
 
+#define REFLECTANCE "reflectance", "reflectanceTexture"
+
 static const Model models[] = {
-    {"diffuse", CDL_MODEL_DIFFUSE, 0.5f, 0, "reflectance", "reflectanceTexture"},
-    {"mirror", CDL_MODEL_MIRROR, 1, 0, "reflectance", "reflectanceTexture"},
-    {"retroreflector", CDL_MODEL_RETROREFLECTOR, 1, 0.05f, "reflectance", "reflectanceTexture"},
-    {"conductor", CDL_MODEL_CONDUCTOR, 1, 0, NULL, NULL},
-    {"dielectric", CDL_MODEL_DIELECTRIC, 1, 0, "transmittance", "transmittanceTexture"},
-    {"interface", CDL_MODEL_INTERFACE, 1, 0, NULL, NULL},
+    {"diffuse", CDL_MODEL_DIFFUSE, REFLECTANCE, 0.5f, none},
+    {"mirror", CDL_MODEL_MIRROR, REFLECTANCE, 1, none},
+    {"retroreflector", CDL_MODEL_RETROREFLECTOR, REFLECTANCE, 1, retroreflector},
+    {"conductor", CDL_MODEL_CONDUCTOR, NULL, NULL, 1, conductor},
+    {"dielectric", CDL_MODEL_DIELECTRIC, "transmittance", "transmittanceTexture", 1, dielectric},
+    {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
 
 static const Model *find_model(const char *name) {
@@ -33,45 +50,50 @@ static cdl_Status not_supported(Builder *builder, const char *key, const char *a
   return extension_mark(builder, "CDL_material", CDL_EXTENSION_UNSUPPORTED);
 }
 
-static cdl_Status read_conductor(Builder *builder, const char *at, const json_t *json,
-                                 cdl_SceneMaterial *material) {
+/* eta and k, or those of a named metal. */
+static cdl_Status read_metal(Builder *builder, const char *at, const json_t *json,
+                             cdl_SceneMaterial *material) {
   const char *metal = json_get_string(json, "metal", NULL);
   int eta = json_object_get(json, "eta") != NULL, k = json_object_get(json, "k") != NULL;
   if (eta != k)
     return document_fail(builder->doc, at, "UNSATISFIED_DEPENDENCY",
                          "eta and k must be given together.");
-  if (!eta && !metal) metal = "Au";
-  if (metal && !metal_index(metal, material->eta, material->k))
+  if (!metal) metal = "Au";
+  float metal_eta[3], metal_k[3];
+  if (!metal_index(metal, metal_eta, metal_k))
     return document_fail(builder->doc, AT("%.200s/metal", at), "VALUE_NOT_IN_LIST",
                          "the metal %.40s is not known; give eta and k.", metal);
-  json_get_numbers(json, "eta", 3, material->eta);
-  json_get_numbers(json, "k", 3, material->k);
+  if (eta) return CDL_OK;
+  memcpy(material->param + CDL_CONDUCTOR_ETA, metal_eta, sizeof metal_eta);
+  memcpy(material->param + CDL_CONDUCTOR_K, metal_k, sizeof metal_k);
   return CDL_OK;
 }
 
-static cdl_Status read_microfacet(Builder *builder, const char *at, const Model *model,
-                                  const json_t *json, cdl_SceneMaterial *material) {
-  material->alpha[0] = material->alpha[1] = model->alpha;
-  json_get_numbers(json, "alpha", 2, material->alpha);
+static void read_flags(const json_t *json, cdl_SceneMaterial *material) {
   int beckmann = strcmp(json_get_string(json, "distribution", "ggx"), "beckmann") == 0;
   int separable = strcmp(json_get_string(json, "masking", "correlated"), "separable") == 0;
   material->distribution = beckmann ? CDL_BECKMANN : CDL_GGX;
   material->masking = separable ? CDL_MASKING_SEPARABLE : CDL_MASKING_CORRELATED;
-  return build_texture_ref(builder, at, json_object_get(json, "alphaTexture"),
-                           &material->alpha_texture);
+  material->thin = json_is_true(json_object_get(json, "thin"));
+  material->energy_compensation = json_is_true(json_object_get(json, "energyCompensation"));
+  material->transmits = material->model == CDL_MODEL_DIELECTRIC;
+  float alpha[2] = {0, 0};
+  json_get_numbers(json, "alpha", 2, alpha);
+  material->anisotropic = alpha[0] != alpha[1];
 }
 
 /* Parameters that this renderer knows of but does not act on. */
 static cdl_Status note_left_out(Builder *builder, const char *at, const json_t *json,
-                                cdl_SceneMaterial *material) {
+                                const cdl_SceneMaterial *material) {
   cdl_Status status = CDL_OK;
-  if (json_is_true(json_object_get(json, "energyCompensation")))
+  float alpha[2] = {0, 0};
+  json_get_numbers(json, "alpha", 2, alpha);
+  if (material->energy_compensation)
     status =
         not_supported(builder, "energyCompensation", at, "energyCompensation", "it is left out");
   if (!status && json_is_number(json_object_get(json, "abbe")))
     status = not_supported(builder, "abbe", at, "abbe", "the glass does not disperse");
-  int rough = material->alpha[0] > 0 || material->alpha[1] > 0;
-  if (!status && material->model == CDL_MODEL_DIELECTRIC && rough)
+  if (!status && material->model == CDL_MODEL_DIELECTRIC && (alpha[0] > 0 || alpha[1] > 0))
     status = not_supported(builder, "rough dielectric", at, "a rough dielectric",
                            "it is rendered smooth");
   if (!status && material->model == CDL_MODEL_DIELECTRIC && material->thin)
@@ -89,21 +111,36 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
     return not_supported(builder, name, at, AT("the model %s", name),
                          "the plain glTF material takes its place");
   material->model = model->model;
-  material->thin = json_is_true(json_object_get(json, "thin"));
-  material->ior = (float)json_get_number(json, "ior", 1.5);
-  material->transmission = 0;
   material->medium = CDL_NONE;
+  material->texture_count = 0;
+  memset(material->param, 0, sizeof material->param);
   for (int c = 0; c < 3; c++) material->base[c] = model->base;
-  material->base_texture = material->metallic_roughness_texture = material->transmission_texture =
-      texture_ref_none();
+  material->base_texture = material->coat_normal_texture = texture_ref_none();
+  read_flags(json, material);
   cdl_Status status = CDL_OK;
-  if (model->colour) {
-    json_get_numbers(json, model->colour, 3, material->base);
+  if (model->color) {
+    json_get_numbers(json, model->color, 3, material->base);
     status = build_texture_ref(builder, at, json_object_get(json, model->texture),
                                &material->base_texture);
   }
-  if (!status) status = read_microfacet(builder, at, model, json, material);
+  if (!status) status = build_params(builder, at, json, model->members, material);
   if (!status && model->model == CDL_MODEL_CONDUCTOR)
-    status = read_conductor(builder, at, json, material);
+    status = read_metal(builder, at, json, material);
   return status ? status : note_left_out(builder, at, json, material);
+}
+
+const char *scene_model_name(uint32_t model) {
+  for (size_t i = 0; i < sizeof models / sizeof *models; i++)
+    if (models[i].model == model) return models[i].name;
+  return model == CDL_MODEL_UNLIT ? "unlit" : "gltf";
+}
+
+uint32_t scene_model_params(uint32_t model) {
+  static const uint32_t words[CDL_MODEL_COUNT] = {
+      [CDL_MODEL_DIELECTRIC] = CDL_DIELECTRIC_PARAMS,
+      [CDL_MODEL_CONDUCTOR] = CDL_CONDUCTOR_PARAMS,
+      [CDL_MODEL_RETROREFLECTOR] = CDL_RETROREFLECTOR_PARAMS,
+      [CDL_MODEL_GLTF] = CDL_GLTF_PARAMS,
+  };
+  return words[model];
 }

@@ -15,6 +15,17 @@ void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size
   return array;
 }
 
+void pack_point(const float m[12], const float *point, float out[3]) {
+  const double x = point[0], y = point[1], z = point[2];
+  for (int r = 0; r < 3; r++)
+    out[r] = (float)(m[4 * r] * x + m[4 * r + 1] * y + m[4 * r + 2] * z + m[4 * r + 3]);
+}
+
+int pack_mirrors(const float m[12]) {
+  double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9], i = m[10];
+  return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0;
+}
+
 double pack_scene_radius(const cdl_Pack *pack) {
   const float *b = pack->bvh.bounds;
   if (!(b[0] <= b[3])) return 1.0;
@@ -61,6 +72,7 @@ void pack_free(cdl_Pack *pack) {
   free(pack->mesh_shapes);
   free(pack->attributes);
   free(pack->materials);
+  free(pack->param_textures);
   free(pack->textures);
   free(pack->texels);
   free(pack->lights);

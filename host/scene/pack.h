@@ -22,6 +22,7 @@ typedef struct cdl_PackFeatures {
   int opacity;  /* holes and half transparent surfaces among them */
   int media;    /* any medium that is not vacuum */
   int triangle_lights, punctual_lights, environment;
+  int coat_normals;            /* clear coats, which have normals of their own */
   int models[CDL_MODEL_COUNT]; /* 1: used; 2: and emissive */
 } cdl_PackFeatures;
 
@@ -30,7 +31,8 @@ typedef struct cdl_Pack {
   cdl_Shape *shapes;
   float *attributes;
   cdl_Material *materials;
-  cdl_Texture *textures; /* two for each of the scene's: as data, and as colour */
+  cdl_ParamTexture *param_textures; /* of all materials */
+  cdl_Texture *textures;            /* two for each of the scene's: as data, and as colour */
   uint32_t *texels;
   float srgb[256]; /* linear value of each sRGB code */
   cdl_Light *lights;
@@ -38,8 +40,8 @@ typedef struct cdl_Pack {
   float *environment; /* RGB and a pad for each texel */
   cdl_AliasEntry *environment_cells;
   cdl_Medium *media;
-  size_t triangle_count, shape_count, attribute_count, material_count, texture_count, texel_count,
-      light_count, environment_count, cell_count, medium_count;
+  size_t triangle_count, shape_count, attribute_count, material_count, param_texture_count,
+      texture_count, texel_count, light_count, environment_count, cell_count, medium_count;
   uint32_t scene_medium;
   uint32_t *mesh_shapes; /* of each mesh of the trees that is placed by instances: its shape */
   cdl_EnvironmentParams environment_params;

@@ -123,6 +123,13 @@ static cdl_TextureSlot pack_slot(const cdl_TextureRef *from, int color) {
   return slot;
 }
 
+/* Opaque surfaces count where they hold a medium: without one, nothing says that they are closed.
+ */
+static int is_boundary(const cdl_SceneMaterial *from) {
+  int holds = from->medium != CDL_NONE || from->model == CDL_MODEL_INTERFACE || from->transmits;
+  return holds && !from->thin;
+}
+
 static uint32_t material_flags(const cdl_SceneMaterial *from) {
   const float *e = from->emission;
   int emissive = (e[0] > 0 || e[1] > 0 || e[2] > 0) && from->model != CDL_MODEL_UNLIT &&
@@ -132,44 +139,60 @@ static uint32_t material_flags(const cdl_SceneMaterial *from) {
          (from->distribution == CDL_BECKMANN ? CDL_MATERIAL_BECKMANN : 0u) |
          (from->masking == CDL_MASKING_SEPARABLE ? CDL_MATERIAL_SEPARABLE : 0u) |
          (from->alpha_mode == CDL_ALPHA_MASK ? CDL_MATERIAL_MASK : 0u) |
-         (from->alpha_mode == CDL_ALPHA_BLEND ? CDL_MATERIAL_BLEND : 0u);
+         (from->alpha_mode == CDL_ALPHA_BLEND ? CDL_MATERIAL_BLEND : 0u) |
+         (is_boundary(from) ? CDL_MATERIAL_BOUNDARY : 0u) | (from->thin ? CDL_MATERIAL_THIN : 0u) |
+         (from->energy_compensation ? CDL_MATERIAL_ENERGY_COMPENSATED : 0u);
 }
 
-static void pack_material(const cdl_SceneMaterial *from, cdl_Material *to) {
-  int gltf = from->model == CDL_MODEL_GLTF;
+static void pack_param_texture(const cdl_SceneParamTexture *from, cdl_ParamTexture *to) {
+  *to = (cdl_ParamTexture){.slot = pack_slot(&from->texture, from->is_color),
+                           .param = from->param,
+                           .words = from->words,
+                           .channel = from->channel,
+                           .offset = from->offset,
+                           .decode = from->is_color != 0};
+  memcpy(to->scale, from->scale, sizeof to->scale);
+}
+
+static void pack_material(const cdl_SceneMaterial *from, cdl_Pack *pack, cdl_Material *to) {
   to->model = from->model;
   to->flags = material_flags(from);
   to->medium = from->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : from->medium + 1u;
   to->alpha_cutoff = from->alpha_cutoff;
   memcpy(to->base, from->base, sizeof to->base);
   memcpy(to->emission, from->emission, sizeof to->emission);
-  to->ior = from->ior;
-  to->metallic = from->metallic;
-  to->roughness = from->roughness;
-  memcpy(to->alpha, from->alpha, sizeof to->alpha);
-  memcpy(to->eta, from->eta, sizeof to->eta);
-  memcpy(to->k, from->k, sizeof to->k);
+  memcpy(to->param, from->param, sizeof to->param);
+  to->param_count = scene_model_params(from->model);
+  to->first_texture = (uint32_t)pack->param_texture_count;
+  to->texture_count = from->texture_count;
+  for (uint32_t i = 0; i < from->texture_count; i++)
+    pack_param_texture(&from->textures[i], &pack->param_textures[pack->param_texture_count++]);
   to->normal_scale = from->normal_scale;
+  to->coat_normal_scale = from->coat_normal_scale;
   to->base_texture = pack_slot(&from->base_texture, 1);
-  to->param_texture = pack_slot(gltf ? &from->metallic_roughness_texture : &from->alpha_texture, 0);
   to->normal_texture = pack_slot(&from->normal_texture, 0);
+  to->coat_normal_texture = pack_slot(&from->coat_normal_texture, 0);
   to->emission_texture = pack_slot(&from->emission_texture, 1);
 }
 
 static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
   int emissive = (m->flags & CDL_MATERIAL_EMISSIVE) != 0;
   features->textures |= m->base_texture.texture != CDL_NONE ||
-                        m->param_texture.texture != CDL_NONE ||
-                        m->normal_texture.texture != CDL_NONE;
+                        m->normal_texture.texture != CDL_NONE ||
+                        m->coat_normal_texture.texture != CDL_NONE || m->texture_count > 0;
   features->emission_textures |= emissive && m->emission_texture.texture != CDL_NONE;
 }
 
 cdl_Status pack_materials(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack) {
   pack->material_count = scene->material_count;
   pack->materials = pack_array(log, "materials", pack->material_count, sizeof *pack->materials);
-  if (!pack->materials) return CDL_BAD_INPUT;
+  size_t textures = 0;
+  for (uint32_t i = 0; i < scene->material_count; i++)
+    textures += scene->materials[i].texture_count;
+  pack->param_textures = pack_array(log, "materials", textures, sizeof *pack->param_textures);
+  if (!pack->materials || !pack->param_textures) return CDL_BAD_INPUT;
   for (uint32_t i = 0; i < scene->material_count; i++) {
-    pack_material(&scene->materials[i], &pack->materials[i]);
+    pack_material(&scene->materials[i], pack, &pack->materials[i]);
     note_features(&pack->materials[i], &pack->features);
   }
   return CDL_OK;

@@ -37,27 +37,37 @@ typedef enum cdl_AlphaMode { CDL_ALPHA_OPAQUE, CDL_ALPHA_MASK, CDL_ALPHA_BLEND }
 typedef enum cdl_Distribution { CDL_GGX, CDL_BECKMANN } cdl_Distribution;
 typedef enum cdl_Masking { CDL_MASKING_CORRELATED, CDL_MASKING_SEPARABLE } cdl_Masking;
 
+/* A texture over words of a parameter: each is offset + scale x its channel. */
+typedef struct cdl_SceneParamTexture {
+  cdl_TextureRef texture;
+  uint32_t param, words; /* first of cdl_SceneMaterial.param, and how many; 3 at the most */
+  uint32_t channel;      /* of the first word, 0: red */
+  float offset, scale[3];
+  int is_color; /* decoded from sRGB */
+} cdl_SceneParamTexture;
+
+enum { CDL_PARAM_TEXTURES_MAX = 24 };
+
 typedef struct cdl_SceneMaterial {
   char *name;     /* never NULL, may be empty */
   uint32_t model; /* CDL_MODEL_* */
   int double_sided;
   cdl_AlphaMode alpha_mode;
   float alpha_cutoff;
-  float base[4];   /* base colour, reflectance or transmittance, and opacity */
-  float metallic;  /* [0,1] */
-  float roughness; /* glTF's, [0,1]; alpha is its square (gltf model only) */
-  float alpha[2];  /* microfacet alpha along tangent and bitangent (CDL models) */
+  float base[4];              /* base colour, reflectance or transmittance, and opacity */
+  float param[CDL_PARAM_MAX]; /* the model's own parameters, abi/param_fields.h */
+  cdl_SceneParamTexture textures[CDL_PARAM_TEXTURES_MAX]; /* over these */
+  uint32_t texture_count;
   cdl_Distribution distribution;
   cdl_Masking masking;
-  float ior;          /* inside over outside; >= 1 for glTF, > 0 for CDL models; 0 means infinite */
-  float eta[3], k[3]; /* complex index of a conductor, per channel */
-  int thin;
-  float normal_scale;
+  int thin;                /* a sheet, which holds no medium */
+  int energy_compensation; /* light is not lost between microfacets */
+  int transmits;           /* paths can go through it by scattering */
+  int anisotropic;         /* looks different along its tangents */
+  float normal_scale, coat_normal_scale;
   float emission[3]; /* factor x strength, radiance */
   uint32_t medium;   /* what fills a closed surface of this material: index, or CDL_NONE: nothing */
-  float transmission; /* KHR_materials_transmission factor, [0,1] */
-  cdl_TextureRef base_texture, metallic_roughness_texture, alpha_texture, normal_texture,
-      emission_texture, transmission_texture;
+  cdl_TextureRef base_texture, normal_texture, coat_normal_texture, emission_texture;
 } cdl_SceneMaterial;
 
 /* One glTF primitive: indexed triangles of one material. Absent attributes are NULL; normals that
@@ -119,6 +129,7 @@ typedef struct cdl_SceneMedium {
 
 typedef struct cdl_SceneEnvironment {
   int present;       /* 0: none given */
+  int assumed;       /* 1: not of the file: the scene has no light */
   uint32_t image;    /* CDL_NONE: constant radiance */
   float radiance[3]; /* of the constant one; 1 otherwise */
   float strength;
@@ -171,6 +182,12 @@ cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptio
 
 /* Frees a scene and all it holds; NULL is nothing. */
 void scene_free(struct cdl_Scene *scene);
+
+/* The name of a CDL_MODEL_*, as in scenes. */
+const char *scene_model_name(uint32_t model);
+
+/* Words of cdl_SceneMaterial.param that a CDL_MODEL_* uses. */
+uint32_t scene_model_params(uint32_t model);
 
 /* The framing camera for a scene's bounds: from front-right and above, all in view. */
 void scene_frame_camera(const float bounds[2][3], cdl_SceneCamera *camera);

@@ -2,20 +2,24 @@
 #ifndef CDL_ABI_MATERIAL_H
 #define CDL_ABI_MATERIAL_H
 
+#include "abi/param_fields.h"
 #include "abi/types.h"
 
 /* Material models; each has a queue and a shading kernel of its own (kernels/bsdf). Those with
- * delta lobes alone come first: no light is sampled for them. */
+ * delta lobes alone come first: no light is sampled for them. Those with parameters beyond their
+ * base colour are neighbours. */
 #define CDL_MODEL_UNLIT 0u
 #define CDL_MODEL_MIRROR 1u
 #define CDL_MODEL_DIELECTRIC 2u
-#define CDL_MODEL_DIFFUSE 3u
-#define CDL_MODEL_CONDUCTOR 4u
-#define CDL_MODEL_RETROREFLECTOR 5u
-#define CDL_MODEL_GLTF 6u
+#define CDL_MODEL_CONDUCTOR 3u
+#define CDL_MODEL_RETROREFLECTOR 4u
+#define CDL_MODEL_GLTF 5u
+#define CDL_MODEL_DIFFUSE 6u
 #define CDL_MODEL_INTERFACE 7u /* the boundary of a medium; has no queue of its own */
 #define CDL_MODEL_COUNT 8u
-#define CDL_MODEL_FIRST_LIT CDL_MODEL_DIFFUSE
+#define CDL_MODEL_FIRST_LIT CDL_MODEL_CONDUCTOR
+#define CDL_MODEL_FIRST_PARAMETERS CDL_MODEL_DIELECTRIC
+#define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_GLTF
 
 /* cdl_Material.flags */
 #define CDL_MATERIAL_DOUBLE_SIDED 1u
@@ -24,6 +28,9 @@
 #define CDL_MATERIAL_SEPARABLE 8u /* masking; else correlated by height */
 #define CDL_MATERIAL_MASK 16u     /* opacity below the cutoff is a hole */
 #define CDL_MATERIAL_BLEND 32u    /* opacity is a probability */
+#define CDL_MATERIAL_BOUNDARY 64u /* going through it means entering or leaving `medium` */
+#define CDL_MATERIAL_THIN 128u    /* a sheet: what goes in comes out on the other side */
+#define CDL_MATERIAL_ENERGY_COMPENSATED 256u
 
 /* A texture look-up: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5. */
 typedef struct cdl_TextureSlot {
@@ -33,6 +40,19 @@ typedef struct cdl_TextureSlot {
 } cdl_TextureSlot;
 CDL_ABI_SIZE(cdl_TextureSlot, 32);
 
+/* A texture over a parameter: each of its words is offset + scale[word] x channel, where the
+ * channels begin with `channel` (0: red). */
+typedef struct cdl_ParamTexture {
+  cdl_TextureSlot slot;
+  uint param; /* first word, CDL_<MODEL>_<NAME> */
+  uint words; /* 1 to 3 */
+  uint channel;
+  float offset;
+  float scale[3];
+  uint decode; /* 1: colours, decoded from sRGB */
+} cdl_ParamTexture;
+CDL_ABI_SIZE(cdl_ParamTexture, 64);
+
 typedef struct cdl_Material {
   uint model;
   uint flags;
@@ -40,19 +60,17 @@ typedef struct cdl_Material {
   float alpha_cutoff;
   float base[4]; /* base colour, reflectance or transmittance; opacity */
   float emission[3];
-  float ior; /* inside over outside */
-  float metallic;
-  float roughness; /* glTF's; alpha is its square */
-  float alpha[2];  /* microfacet alpha along tangent and bitangent */
-  float eta[3];    /* complex index of a conductor: eta + i k */
   float normal_scale;
-  float k[3];
-  uint pad;
-  cdl_TextureSlot base_texture;  /* colour */
-  cdl_TextureSlot param_texture; /* G: roughness, B: metallic (glTF); R scales alpha (others) */
+  uint param_count;   /* words of `param` in use */
+  uint first_texture; /* of the parameters, index into the array of them all */
+  uint texture_count;
+  float coat_normal_scale;
+  cdl_TextureSlot base_texture; /* colour */
   cdl_TextureSlot normal_texture;
+  cdl_TextureSlot coat_normal_texture;
   cdl_TextureSlot emission_texture; /* colour */
+  float param[CDL_PARAM_MAX];       /* abi/param_fields.h */
 } cdl_Material;
-CDL_ABI_SIZE(cdl_Material, 224);
+CDL_ABI_SIZE(cdl_Material, 352);
 
 #endif

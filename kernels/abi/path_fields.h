@@ -40,12 +40,13 @@ CDL_FIELD(WORK, GEOMETRIC_NORMAL, 3)
 CDL_FIELD(WORK, NORMAL, 3)
 /* Unit tangent, orthogonal to the shading normal. */
 CDL_FIELD(WORK, TANGENT, 3)
-/* Material: index, and its textured parameters: base colour, roughness (glTF's, or the factor of
- * alpha), metallic, [0,1]. */
+/* Unit normal of a clear coat, on the side that the path comes from. */
+CDL_FIELD(WORK, COAT_NORMAL, 3)
+/* Material: index, base colour, and the parameters of its model (abi/param_fields.h), textures
+ * applied. */
 CDL_FIELD(WORK, MATERIAL, 1)
 CDL_FIELD(WORK, BASE, 3)
-CDL_FIELD(WORK, ROUGHNESS, 1)
-CDL_FIELD(WORK, METALLIC, 1)
+CDL_FIELD(WORK, PARAM, CDL_PARAM_MAX)
 /* Bits: CDL_VERTEX_*. */
 CDL_FIELD(WORK, VERTEX, 1)
 /* A point on a light as seen from here: unit direction, distance in m (infinite: environment),
@@ -56,6 +57,8 @@ CDL_FIELD(WORK, LIGHT_WEIGHT, 3)
 CDL_FIELD(WORK, LIGHT_PDF, 1)
 /* What the light adds to the pixel if nothing is in between; 0: no shadow ray. */
 CDL_FIELD(WORK, SHADOW_ORIGIN, 3)
+/* Media that the shadow ray begins in, as PATH_MEDIA. */
+CDL_FIELD(WORK, SHADOW_MEDIA, 2)
 CDL_FIELD(WORK, SHADOW_RADIANCE, 3)
 /* 1 if a shadow ray is traced for this vertex, else 0. */
 CDL_FIELD(WORK, SHADOW_COUNT, 1)

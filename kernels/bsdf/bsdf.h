@@ -1,8 +1,9 @@
 /* bsdf.h: what all surface models share.
  *
- * A model NAME in NAME.h is two functions,
- *   BsdfValue NAME_evaluate(BsdfParams p, vec3 wo, vec3 wi)
- *   BsdfSample NAME_sample(BsdfParams p, vec3 wo, float u, float v, float w)
+ * A model Name in name.h is a struct of what it depends on at one point and three functions,
+ *   NameParams name_params(BsdfPoint point, CDL_GLOBAL const uint *params, size_t stride, size_t i)
+ *   BsdfValue name_evaluate(NameParams p, vec3 wo, vec3 wi)
+ *   BsdfSample name_sample(NameParams p, vec3 wo, float u, float v, float w)
  * in the local frame: X the tangent, Y the bitangent, Z the shading normal turned to the side of
  * wo, so that wo.z > 0. Directions have length 1 and point away from the surface: wo to where the
  * radiance goes, wi to where it comes from. u, v, w are uniform in [0,1).
@@ -17,17 +18,27 @@
 #include "lib/math.h"
 #include "lib/vec.h"
 
-/* A material at one point, textures applied. Each model reads what SCENES's table gives it. */
-typedef struct BsdfParams {
-  vec3 base;              /* reflectance, base colour or transmittance, [0,1] */
-  float roughness;        /* glTF's, [0,1] */
-  float metallic;         /* [0,1] */
-  float alpha_x, alpha_y; /* microfacet alpha along tangent and bitangent, >= 0 */
-  float ior;              /* inside over outside, > 0 */
-  vec3 eta, k;            /* complex index of a conductor */
-  uint flags;             /* CDL_MATERIAL_* */
-  int front;              /* 1: wo is on the front of the geometry, outside */
-} BsdfParams;
+/* What all models have at a point, textures applied. */
+typedef struct BsdfPoint {
+  vec3 base;            /* reflectance, base colour or transmittance, [0,1] */
+  vec3 throughput;      /* of the path so far; for the choice of a colour channel alone */
+  vec3 coat_normal;     /* unit, in the local frame: the normal of a clear coat */
+  float wavelength;     /* [0,1), the same at all vertices of a path */
+  float channel_choice; /* [0,1), of this vertex: for the choice of a colour channel */
+  uint flags;           /* CDL_MATERIAL_* */
+  int front;            /* 1: wo is on the front of the geometry, outside */
+} BsdfPoint;
+
+/* Words of the model's own parameters, abi/param_fields.h: word k of point i is params[k stride +
+ * i]. */
+CDL_INLINE float param_float(CDL_GLOBAL const uint *params, uint word, size_t stride, size_t i) {
+  return as_float(params[word * stride + i]);
+}
+
+CDL_INLINE vec3 param_vec3(CDL_GLOBAL const uint *params, uint word, size_t stride, size_t i) {
+  return v3(param_float(params, word, stride, i), param_float(params, word + 1u, stride, i),
+            param_float(params, word + 2u, stride, i));
+}
 
 typedef struct BsdfValue {
   vec3 f_cos; /* f |cos theta_i|, >= 0 */

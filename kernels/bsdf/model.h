@@ -10,36 +10,48 @@
 #include "bsdf/mirror.h"
 #define CDL_SHADE_LIT 0
 #define CDL_SHADE_TRANSMITS 0
+#define BsdfParams MirrorParams
+#define bsdf_params mirror_params
 #define bsdf_evaluate mirror_evaluate
 #define bsdf_sample_model mirror_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_DIELECTRIC
 #include "bsdf/dielectric.h"
 #define CDL_SHADE_LIT 0
 #define CDL_SHADE_TRANSMITS 1
+#define BsdfParams DielectricParams
+#define bsdf_params dielectric_params
 #define bsdf_evaluate dielectric_evaluate
 #define bsdf_sample_model dielectric_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_DIFFUSE
 #include "bsdf/diffuse.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 0
+#define BsdfParams DiffuseParams
+#define bsdf_params diffuse_params
 #define bsdf_evaluate diffuse_evaluate
 #define bsdf_sample_model diffuse_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_CONDUCTOR
 #include "bsdf/conductor.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 0
+#define BsdfParams ConductorParams
+#define bsdf_params conductor_params
 #define bsdf_evaluate conductor_evaluate
 #define bsdf_sample_model conductor_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_RETROREFLECTOR
 #include "bsdf/retroreflector.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 0
+#define BsdfParams RetroreflectorParams
+#define bsdf_params retroreflector_params
 #define bsdf_evaluate retroreflector_evaluate
 #define bsdf_sample_model retroreflector_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_GLTF
 #include "bsdf/gltf.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 0
+#define BsdfParams GltfParams
+#define bsdf_params gltf_params
 #define bsdf_evaluate gltf_evaluate
 #define bsdf_sample_model gltf_sample
 #else

@@ -11,28 +11,43 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/microfacet.h"
 
-CDL_INLINE Microfacets retroreflector_surface(BsdfParams p) {
-  return microfacet_surface(p.alpha_x, p.alpha_y, (p.flags & CDL_MATERIAL_BECKMANN) != 0u,
-                            (p.flags & CDL_MATERIAL_SEPARABLE) != 0u);
+typedef struct RetroreflectorParams {
+  vec3 reflectance;
+  Microfacets facets;
+  float ior;
+} RetroreflectorParams;
+
+CDL_INLINE RetroreflectorParams retroreflector_params(BsdfPoint point,
+                                                      CDL_GLOBAL const uint *params, size_t stride,
+                                                      size_t i) {
+  RetroreflectorParams p;
+  p.reflectance = point.base;
+  p.facets = microfacet_surface(param_float(params, CDL_RETROREFLECTOR_ALPHA, stride, i),
+                                param_float(params, CDL_RETROREFLECTOR_ALPHA + 1u, stride, i),
+                                (point.flags & CDL_MATERIAL_BECKMANN) != 0u,
+                                (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
+  p.ior = param_float(params, CDL_RETROREFLECTOR_IOR, stride, i);
+  return p;
 }
 
 /* Reflectance times what passes the coat, by channel. */
-CDL_INLINE vec3 retroreflector_tint(BsdfParams p, vec3 wo, vec3 wi) {
+CDL_INLINE vec3 retroreflector_tint(RetroreflectorParams p, vec3 wo, vec3 wi) {
   float in = 1.0f - fresnel_dielectric(math_saturate(wi.z), p.ior).reflectance;
   float out = 1.0f - fresnel_dielectric(math_after(in, math_saturate(wo.z)), p.ior).reflectance;
-  return v3_scale(p.base, in * out);
+  return v3_scale(p.reflectance, in * out);
 }
 
-CDL_INLINE BsdfValue retroreflector_evaluate(BsdfParams p, vec3 wo, vec3 wi) {
-  Microfacets m = retroreflector_surface(p);
+CDL_INLINE BsdfValue retroreflector_evaluate(RetroreflectorParams p, vec3 wo, vec3 wi) {
+  Microfacets m = p.facets;
   MicrofacetLobe lobe = microfacet_evaluate(m, bsdf_mirror(wo), wi);
   float f_cos = m.smooth ? 0.0f : lobe.f_cos;
   return bsdf_value(v3_scale(retroreflector_tint(p, wo, wi), f_cos), m.smooth ? 0.0f : lobe.pdf);
 }
 
-CDL_INLINE BsdfSample retroreflector_sample(BsdfParams p, vec3 wo, float u, float v, float w) {
+CDL_INLINE BsdfSample retroreflector_sample(RetroreflectorParams p, vec3 wo, float u, float v,
+                                            float w) {
   (void)w;
-  Microfacets m = retroreflector_surface(p);
+  Microfacets m = p.facets;
   vec3 mirrored = bsdf_mirror(wo);
   vec3 rough = fresnel_reflect(mirrored, microfacet_sample_normal(m, mirrored, u, v));
   vec3 wi = v3_select(m.smooth, wo, rough);

@@ -10,7 +10,8 @@
 
 #define CDL_PAIR_FILM 0u
 #define CDL_PAIR_LENS 1u
-#define CDL_PAIR_FIRST_VERTEX 2u
+#define CDL_PAIR_PATH 2u /* wavelength; time */
+#define CDL_PAIR_FIRST_VERTEX 3u
 
 #define CDL_PAIR_DIRECTION 0u   /* the scattered direction */
 #define CDL_PAIR_LOBE 1u        /* which lobe; Russian roulette */
@@ -19,7 +20,8 @@
 #define CDL_PAIR_FREE_FLIGHT 4u /* which channel's extinction; the distance */
 #define CDL_PAIR_TEXEL 5u       /* the point within a cell of the environment */
 #define CDL_PAIR_OPACITY 6u     /* whether a half transparent surface is passed */
-#define CDL_PAIRS_PER_VERTEX 7u
+#define CDL_PAIR_CHANNEL 7u     /* which colour channel goes on in a dispersive medium */
+#define CDL_PAIRS_PER_VERTEX 8u
 
 /* Who draws: the pixel's key and the number of the sample. */
 typedef struct PathRandom {

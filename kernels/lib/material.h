@@ -4,6 +4,7 @@
 
 #include "abi/geometry.h"
 #include "abi/material.h"
+#include "lib/surface.h"
 #include "lib/texture.h"
 
 /* Two floats of each corner, blended; 0 where the shape has none. */
@@ -75,6 +76,20 @@ CDL_INLINE Texel material_base(CDL_GLOBAL const cdl_Material *material,
                     base.b * (tinted ? color.b : 1.0f), base.a * (tinted ? color.a : 1.0f));
 #endif
   return base;
+}
+
+/* The normal of a normal map, in the frame of the interpolated normal (glTF 2.0, 3.9.3); that
+ * normal itself where there is no map. */
+CDL_INLINE vec3 material_normal(CDL_GLOBAL const cdl_TextureSlot *slot, float scale,
+                                SurfacePoint point, TextureCoords uv, CDL_TEXTURE_ARGS) {
+  Texel texel = texture_lookup(slot, textures, texels, srgb, uv, 0);
+  float x = fma(2.0f, texel.r, -1.0f) * scale;
+  float green = math_after(x, texel.g);
+  float y = fma(2.0f, green, -1.0f) * scale * point.handedness;
+  float z = fma(2.0f, math_after(y, texel.b), -1.0f);
+  vec3 bent = frame_to_world(frame_from_tangent(point.normal, point.tangent), v3(x, y, z));
+  int present = (slot->texture != CDL_NONE) & (v3_length2(bent) > 1e-12f);
+  return v3_select(present, v3_normalize(bent), point.normal);
 }
 
 /* The probability that light is stopped: glTF's alpha modes. */

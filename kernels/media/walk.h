@@ -26,8 +26,7 @@ CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, 
         materials + shapes[triangles[hit.primitive].shape].material;
     /* Opaque surfaces count where they hold a medium: without one, nothing says that they are
      * closed. */
-    int boundary = material->model == CDL_MODEL_INTERFACE ||
-                   material->model == CDL_MODEL_DIELECTRIC || material->medium != CDL_MEDIUM_VACUUM;
+    int boundary = (material->flags & CDL_MATERIAL_BOUNDARY) != 0u;
     if (boundary && !repeated)
       stack = hit_crossed(hit, stack, direction, material->medium, instances, triangles, shapes,
                           attributes);

@@ -30,6 +30,8 @@ __kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
     vec3 direct = v3_mul(throughput, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
     direct = v3_scale(direct, scatters ? phase * mis : 0.0f);
     state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, position);
+    state_set_uint(work, CDL_WORK_SHADOW_MEDIA, stride, i, stack.inner);
+    state_set_uint(work, CDL_WORK_SHADOW_MEDIA + 1, stride, i, stack.outer);
     state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
     state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
 #endif

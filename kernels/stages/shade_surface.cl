@@ -11,20 +11,29 @@
 #include "lib/state.h"
 #include "media/stack.h"
 
-CDL_INLINE BsdfParams load_params(CDL_GLOBAL const uint *work, size_t stride, size_t i,
-                                  CDL_GLOBAL const cdl_Material *material) {
-  BsdfParams p;
-  p.base = state_vec3(work, CDL_WORK_BASE, stride, i);
-  p.roughness = material->roughness * state_float(work, CDL_WORK_ROUGHNESS, stride, i);
-  p.metallic = material->metallic * state_float(work, CDL_WORK_METALLIC, stride, i);
-  p.alpha_x = material->alpha[0] * state_float(work, CDL_WORK_ROUGHNESS, stride, i);
-  p.alpha_y = material->alpha[1] * state_float(work, CDL_WORK_ROUGHNESS, stride, i);
-  p.ior = material->ior;
-  p.eta = v3(material->eta[0], material->eta[1], material->eta[2]);
-  p.k = v3(material->k[0], material->k[1], material->k[2]);
-  p.flags = material->flags;
-  p.front = (state_uint(work, CDL_WORK_VERTEX, stride, i) & CDL_VERTEX_FRONT) != 0u;
-  return p;
+CDL_INLINE BsdfPoint load_point(CDL_GLOBAL const uint *path, CDL_GLOBAL const uint *work,
+                                size_t stride, size_t i, uint flags, Frame shading,
+                                PathRandom random, uint vertex) {
+  BsdfPoint point;
+  point.base = state_vec3(work, CDL_WORK_BASE, stride, i);
+  point.throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
+  point.coat_normal = v3(0.0f, 0.0f, 1.0f);
+  point.wavelength = 0.0f;
+  point.channel_choice = 0.0f;
+  point.flags = flags;
+  point.front = (state_uint(work, CDL_WORK_VERTEX, stride, i) & CDL_VERTEX_FRONT) != 0u;
+#ifdef CDL_SHADE_COATED
+  point.coat_normal = frame_to_local(shading, state_vec3(work, CDL_WORK_COAT_NORMAL, stride, i));
+#endif
+#ifdef CDL_SHADE_DISPERSES
+  float unused;
+  rng_2d(random.key, random.sample, CDL_PAIR_PATH, &point.wavelength, &unused);
+  vertex_random(random, vertex, CDL_PAIR_CHANNEL, &point.channel_choice, &unused);
+#endif
+  (void)shading;
+  (void)random;
+  (void)vertex;
+  return point;
 }
 
 __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
@@ -35,30 +44,54 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
     size_t stride = wave->stride;
     CDL_GLOBAL const cdl_Material *material =
         materials + state_uint(work, CDL_WORK_MATERIAL, stride, i);
-    BsdfParams p = load_params(work, stride, i, material);
+    uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
+    PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
     vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
     vec3 geometric = state_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i);
     Frame shading = frame_orthonormal(state_vec3(work, CDL_WORK_NORMAL, stride, i),
                                       state_vec3(work, CDL_WORK_TANGENT, stride, i));
     vec3 wo = frame_to_local(shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
-    vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
-    uint counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
+    BsdfPoint point =
+        load_point(path, work, stride, i, material->flags, shading, random, counts_vertex(counts));
+    BsdfParams p = bsdf_params(point, work + CDL_WORK_PARAM * stride, stride, i);
+    vec3 throughput = point.throughput;
     int scatters = counts_depth(counts) < params->max_depth;
+
+    MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
+                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
+    MediaStack crossed = before;
+#if CDL_SHADE_TRANSMITS
+    MediaStack beyond = media_crossed(before, material->medium, point.front);
+    int boundary = (material->flags & CDL_MATERIAL_BOUNDARY) != 0u;
+    crossed.inner = boundary ? beyond.inner : before.inner;
+    crossed.outer = boundary ? beyond.outer : before.outer;
+#endif
 
 #if CDL_SHADE_LIT && defined(CDL_LIGHTS)
     vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
     float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-    BsdfValue value = bsdf_evaluate(p, wo, frame_to_local(shading, to_light));
-    int lit = scatters & (v3_dot(to_light, geometric) > 0.0f);
+    vec3 local_light = frame_to_local(shading, to_light);
+    BsdfValue value = bsdf_evaluate(p, wo, local_light);
+    float light_side = v3_dot(to_light, geometric);
+#if CDL_SHADE_TRANSMITS
+    int behind = light_side < 0.0f;
+    int lit = behind ? local_light.z < 0.0f : local_light.z > 0.0f;
+#else
+    int behind = 0;
+    int lit = light_side > 0.0f;
+#endif
     float mis = light_pdf > 0.0f ? mis_power(light_pdf, value.pdf) : 1.0f;
     vec3 direct = v3_mul(value.f_cos, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
-    direct = v3_scale(v3_mul(throughput, direct), lit ? mis : 0.0f);
-    state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, offset_ray(position, geometric));
+    direct = v3_scale(v3_mul(throughput, direct), (scatters & lit) ? mis : 0.0f);
+    vec3 light_normal = v3_select(behind, v3_neg(geometric), geometric);
+    state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, offset_ray(position, light_normal));
+    state_set_uint(work, CDL_WORK_SHADOW_MEDIA, stride, i, behind ? crossed.inner : before.inner);
+    state_set_uint(work, CDL_WORK_SHADOW_MEDIA + 1, stride, i,
+                   behind ? crossed.outer : before.outer);
     state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
     state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
 #endif
 
-    PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
     float u, v, lobe, chance;
     vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
     vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
@@ -69,11 +102,12 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
     BsdfSample sample = bsdf_sample_model(p, wo, u, v, lobe);
     vec3 wi = frame_to_world(shading, sample.wi);
     float side = v3_dot(wi, geometric);
-    int right_side = sample.transmitted ? side < 0.0f : side > 0.0f;
+    int through = sample.transmitted;
+    int right_side = through ? side < 0.0f : side > 0.0f;
     vec3 next =
         roulette(params, counts_depth(counts) + 1u, v3_mul(throughput, sample.weight), chance);
     next = v3_select(scatters & right_side, next, v3_all(0.0f));
-    vec3 leaving = v3_select(sample.transmitted, v3_neg(geometric), geometric);
+    vec3 leaving = v3_select(through, v3_neg(geometric), geometric);
 
     state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, offset_ray(position, leaving));
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, wi);
@@ -82,10 +116,6 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
     state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(counts));
 #if CDL_SHADE_TRANSMITS
-    MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
-                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-    MediaStack crossed = media_crossed(before, material->medium, p.front);
-    int through = sample.transmitted;
     state_set_uint(path, CDL_PATH_MEDIA, stride, i, through ? crossed.inner : before.inner);
     state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i, through ? crossed.outer : before.outer);
 #endif

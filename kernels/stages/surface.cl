@@ -1,24 +1,10 @@
-/* surface: geometry and textured parameters of every surface that was hit, for the kernels after
- * it. */
+/* surface: geometry and base colour of every surface that was hit, for the kernels after it. */
 #include "lib/stage.h"
 
 #include "abi/params.h"
 #include "lib/material.h"
 #include "lib/state.h"
 #include "lib/surface.h"
-
-/* The normal of a normal map, in the frame of the interpolated normal (glTF 2.0, 3.9.3). */
-CDL_INLINE vec3 mapped_normal(SurfacePoint point, CDL_GLOBAL const cdl_Material *material,
-                              TextureCoords uv, CDL_TEXTURE_ARGS) {
-  Texel texel = texture_lookup(&material->normal_texture, textures, texels, srgb, uv, 0);
-  float x = fma(2.0f, texel.r, -1.0f) * material->normal_scale;
-  float green = math_after(x, texel.g);
-  float y = fma(2.0f, green, -1.0f) * material->normal_scale * point.handedness;
-  float z = fma(2.0f, math_after(y, texel.b), -1.0f);
-  vec3 bent = frame_to_world(frame_from_tangent(point.normal, point.tangent), v3(x, y, z));
-  int present = (material->normal_texture.texture != CDL_NONE) & (v3_length2(bent) > 1e-12f);
-  return v3_select(present, v3_normalize(bent), point.normal);
-}
 
 __kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
                       CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
@@ -42,19 +28,13 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
     SurfacePoint point =
         surface_point(bvh_instances + instance_index, shape, attributes, triangle, u, v);
 
-    float roughness = 1.0f;
-    float metallic = 1.0f;
     vec3 normal = point.normal;
     TextureCoords uv;
 #ifdef CDL_TEXTURES
     uv = shape_texture_coords(shape, attributes, triangle, u, v);
-    normal = mapped_normal(point, material, uv, textures, texels, srgb);
+    normal = material_normal(&material->normal_texture, material->normal_scale, point, uv, textures,
+                             texels, srgb);
     uv = texture_coords_after(normal.x, uv);
-    Texel param = texture_lookup(&material->param_texture, textures, texels, srgb, uv, 0);
-    int is_gltf = material->model == CDL_MODEL_GLTF;
-    roughness = is_gltf ? param.g : param.r;
-    metallic = param.b;
-    uv = texture_coords_after(metallic, uv);
 #else
     uv.u0 = uv.v0 = uv.u1 = uv.v1 = uv.pad = 0.0f;
 #endif
@@ -73,8 +53,6 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
     state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
     state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
     state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
-    state_set_float(work, CDL_WORK_ROUGHNESS, stride, i, roughness);
-    state_set_float(work, CDL_WORK_METALLIC, stride, i, metallic);
     state_set_uint(work, CDL_WORK_VERTEX, stride, i, vertex);
   }
 }

@@ -82,7 +82,7 @@ __kernel void local_frame(__global const float *in, __global float *out) {
 __kernel void samples(__global const float *in, __global float *out) {
   uint i = (uint)get_global_id(0);
   float u = rng_to_unit(rng_hash2(i, 1u)), v = rng_to_unit(rng_hash2(i, 2u));
-  BsdfParams p = {.base = v3_all(in[0]), .roughness = 0.0f};
+  DiffuseParams p = {.reflectance = v3_all(in[0])};
   vec3 up = v3(0.0f, 0.0f, 1.0f);
   BsdfSample diffuse = diffuse_sample(p, up, u, v, 0.0f);
   Microfacets m = microfacet_surface(0.5f, 0.5f, 1, 0);

@@ -44,9 +44,9 @@ static void test_core(void **state) {
   assert_string_equal(m->name, "m");
   assert_int_equal(m->model, CDL_MODEL_GLTF);
   NEAR(m->base[3], 0.4);
-  NEAR(m->metallic, 0.25);
-  NEAR(m->roughness, 0.75);
-  NEAR(m->ior, 1.8);
+  NEAR(m->param[CDL_GLTF_METALLIC], 0.25);
+  NEAR(m->param[CDL_GLTF_ROUGHNESS], 0.75);
+  NEAR(m->param[CDL_GLTF_IOR], 1.8);
   NEAR(m->emission[0], 8);
   NEAR(m->emission[1], 4);
   NEAR(m->alpha_cutoff, 0.7);
@@ -114,30 +114,53 @@ static void test_cdl_models(void **state) {
   static const struct {
     const char *members;
     uint32_t model;
-    float base, alpha[2], ior;
+    float base;
+    uint32_t alpha_word;
+    float alpha[2];
+    uint32_t ior_word;
+    float ior;
   } cases[] = {
-      {"\"model\":\"diffuse\"", CDL_MODEL_DIFFUSE, 0.5f, {0, 0}, 1.5f},
-      {"\"model\":\"diffuse\",\"reflectance\":0.25", CDL_MODEL_DIFFUSE, 0.25f, {0, 0}, 1.5f},
-      {"\"model\":\"mirror\"", CDL_MODEL_MIRROR, 1, {0, 0}, 1.5f},
-      {"\"model\":\"retroreflector\"", CDL_MODEL_RETROREFLECTOR, 1, {0.05f, 0.05f}, 1.5f},
+      {"\"model\":\"diffuse\"", CDL_MODEL_DIFFUSE, 0.5f, 0, {0, 0}, 0, 0},
+      {"\"model\":\"diffuse\",\"reflectance\":0.25", CDL_MODEL_DIFFUSE, 0.25f, 0, {0, 0}, 0, 0},
+      {"\"model\":\"mirror\"", CDL_MODEL_MIRROR, 1, 0, {0, 0}, 0, 0},
+      {"\"model\":\"retroreflector\"",
+       CDL_MODEL_RETROREFLECTOR,
+       1,
+       CDL_RETROREFLECTOR_ALPHA,
+       {0.05f, 0.05f},
+       CDL_RETROREFLECTOR_IOR,
+       1.5f},
       {"\"model\":\"dielectric\",\"ior\":1.33,\"transmittance\":[0.5,1,1]",
        CDL_MODEL_DIELECTRIC,
        0.5f,
+       CDL_PARAM_MAX - 2,
        {0, 0},
+       CDL_DIELECTRIC_IOR,
        1.33f},
-      {"\"model\":\"conductor\",\"alpha\":[0.1,0.4]", CDL_MODEL_CONDUCTOR, 1, {0.1f, 0.4f}, 1.5f},
-      {"\"model\":\"conductor\",\"alpha\":0.3", CDL_MODEL_CONDUCTOR, 1, {0.3f, 0.3f}, 1.5f},
-      {"\"model\":\"interface\"", CDL_MODEL_INTERFACE, 1, {0, 0}, 1.5f},
-      {"\"model\":\"hair\"", CDL_MODEL_GLTF, 1, {0, 0}, 1.5f}};
+      {"\"model\":\"conductor\",\"alpha\":[0.1,0.4]",
+       CDL_MODEL_CONDUCTOR,
+       1,
+       CDL_CONDUCTOR_ALPHA,
+       {0.1f, 0.4f},
+       CDL_PARAM_MAX - 1,
+       0},
+      {"\"model\":\"conductor\",\"alpha\":0.3",
+       CDL_MODEL_CONDUCTOR,
+       1,
+       CDL_CONDUCTOR_ALPHA,
+       {0.3f, 0.3f},
+       CDL_PARAM_MAX - 1,
+       0},
+      {"\"model\":\"interface\"", CDL_MODEL_INTERFACE, 1, 0, {0, 0}, 0, 0},
+      {"\"model\":\"hair\"", CDL_MODEL_GLTF, 1, CDL_PARAM_MAX - 2, {0, 0}, CDL_GLTF_IOR, 1.5f}};
   for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
     struct cdl_Scene *scene = cdl_scene(cases[i].members);
     assert_non_null(scene);
     const cdl_SceneMaterial *m = &scene->materials[0];
     assert_int_equal(m->model, cases[i].model);
     NEAR(m->base[0], cases[i].base);
-    NEAR(m->alpha[0], cases[i].alpha[0]);
-    NEAR(m->alpha[1], cases[i].alpha[1]);
-    NEAR(m->ior, cases[i].ior);
+    for (uint32_t k = 0; k < 2; k++) NEAR(m->param[cases[i].alpha_word + k], cases[i].alpha[k]);
+    NEAR(m->param[cases[i].ior_word], cases[i].ior);
     int supported = cases[i].model != CDL_MODEL_GLTF;
     assert_int_equal(scene->extensions[0].state,
                      supported ? CDL_EXTENSION_USED : CDL_EXTENSION_UNSUPPORTED);
@@ -151,8 +174,8 @@ static void test_cdl_conductor(void **state) {
       cdl_scene("\"model\":\"conductor\",\"eta\":[1,2,3],\"k\":4,\"distribution\":\"beckmann\","
                 "\"masking\":\"separable\"");
   assert_non_null(scene);
-  NEAR(scene->materials[0].eta[2], 3);
-  NEAR(scene->materials[0].k[1], 4);
+  NEAR(scene->materials[0].param[CDL_CONDUCTOR_ETA + 2], 3);
+  NEAR(scene->materials[0].param[CDL_CONDUCTOR_K + 1], 4);
   assert_int_equal(scene->materials[0].distribution, CDL_BECKMANN);
   assert_int_equal(scene->materials[0].masking, CDL_MASKING_SEPARABLE);
   scene_free(scene);

@@ -1,0 +1,67 @@
+/* param_fields.h: the parameters of each material model, word by word, as surfaces hand them to
+ * shading (CDL_WORK_PARAM) and as the host stores them (cdl_Material.param): CDL_<MODEL>_<NAME> is
+ * the first word, CDL_<MODEL>_PARAMS how many there are. Base colour, opacity and emission are not
+ * among them: all models have those. */
+#ifndef CDL_ABI_PARAM_FIELDS_H
+#define CDL_ABI_PARAM_FIELDS_H
+
+#define CDL_PARAM_MAX 40u /* words of the largest model, at the most */
+
+#define CDL_PARAM(model, name, words)                                                              \
+  CDL_##model##_##name, CDL_##model##_##name##_END = CDL_##model##_##name + (words)-1
+
+/* Index of refraction, inside over outside, > 0. */
+enum { CDL_PARAM(DIELECTRIC, IOR, 1), CDL_DIELECTRIC_PARAMS };
+
+/* Microfacet alpha along tangent and bitangent; complex index eta + i k, per channel. */
+enum {
+  CDL_PARAM(CONDUCTOR, ALPHA, 2),
+  CDL_PARAM(CONDUCTOR, ETA, 3),
+  CDL_PARAM(CONDUCTOR, K, 3),
+  CDL_CONDUCTOR_PARAMS
+};
+
+/* As above; the coat's index. */
+enum {
+  CDL_PARAM(RETROREFLECTOR, ALPHA, 2),
+  CDL_PARAM(RETROREFLECTOR, IOR, 1),
+  CDL_RETROREFLECTOR_PARAMS
+};
+
+/* glTF's factors, [0,1]: alpha is the square of roughness. */
+enum {
+  CDL_PARAM(GLTF, METALLIC, 1),
+  CDL_PARAM(GLTF, ROUGHNESS, 1),
+  CDL_PARAM(GLTF, IOR, 1),
+  CDL_GLTF_PARAMS
+};
+
+/* [0,1] */
+enum { CDL_PARAM(OREN_NAYAR, ROUGHNESS, 1), CDL_OREN_NAYAR_PARAMS };
+
+/* Microfacet alpha of the coat along tangent and bitangent; its index, [1,3]. */
+enum { CDL_PARAM(PLASTIC, ALPHA, 2), CDL_PARAM(PLASTIC, IOR, 1), CDL_PLASTIC_PARAMS };
+
+/* Burley's names and ranges: all [0,1] but IOR > 0 and DIFF_TRANS [0,2]; THIN is 0 or 1. */
+enum {
+  CDL_PARAM(DISNEY, METALLIC, 1),
+  CDL_PARAM(DISNEY, ROUGHNESS, 1),
+  CDL_PARAM(DISNEY, ANISOTROPIC, 1),
+  CDL_PARAM(DISNEY, SPECULAR, 1),
+  CDL_PARAM(DISNEY, SPECULAR_TINT, 1),
+  CDL_PARAM(DISNEY, SHEEN, 1),
+  CDL_PARAM(DISNEY, SHEEN_TINT, 1),
+  CDL_PARAM(DISNEY, CLEARCOAT, 1),
+  CDL_PARAM(DISNEY, CLEARCOAT_GLOSS, 1),
+  CDL_PARAM(DISNEY, SUBSURFACE, 1),
+  CDL_PARAM(DISNEY, SPEC_TRANS, 1),
+  CDL_PARAM(DISNEY, IOR, 1),
+  CDL_PARAM(DISNEY, DIFF_TRANS, 1),
+  CDL_PARAM(DISNEY, FLATNESS, 1),
+  CDL_PARAM(DISNEY, THIN, 1),
+  CDL_DISNEY_PARAMS
+};
+
+#undef CDL_PARAM
+
+#endif
