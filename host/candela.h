@@ -44,6 +44,21 @@ typedef struct cdl_Scene cdl_Scene;
  * negative for the pose at rest. *scene is set on success alone. */
 cdl_Status cdl_scene_load(const cdl_Log *log, const char *path, double time, cdl_Scene **scene);
 
+/* What of a scene is loaded. cdl_scene_options_default() fills it. */
+typedef struct cdl_SceneOptions {
+  double time;           /* animation time, s; negative: the pose at rest */
+  const char *animation; /* name or index; NULL: all that do not move the same things */
+  const char *variant;   /* of KHR_materials_variants, by name; NULL: the default materials */
+} cdl_SceneOptions;
+
+/* At rest, in the default materials. */
+void cdl_scene_options_default(cdl_SceneOptions *options);
+
+/* As cdl_scene_load(). CDL_USAGE for an animation or a variant that the file does not have, with a
+ * list of what it has. */
+cdl_Status cdl_scene_load_with(const cdl_Log *log, const char *path,
+                               const cdl_SceneOptions *options, cdl_Scene **scene);
+
 /* Replaces the scene's environment by an image file (latitude-longitude), NULL to keep it. */
 cdl_Status cdl_scene_set_environment(cdl_Scene *scene, const cdl_Log *log, const char *path);
 

@@ -10,16 +10,32 @@
 typedef struct Options {
   int json;
   const char *path;
+  cdl_SceneOptions what;
 } Options;
 
+enum { KEY_AT = 256, KEY_ANIMATION, KEY_VARIANT };
+
 static const struct argp_option option_list[] = {
-    {"json", 'j', NULL, 0, "Print JSON on standard output", 0}, {0}};
+    {"json", 'j', NULL, 0, "Print JSON on standard output", 0},
+    {"at", KEY_AT, "SECONDS", 0, "Animation time, as for candela render", 0},
+    {"animation", KEY_ANIMATION, "NAME|INDEX", 0, "Animation, as for candela render", 0},
+    {"variant", KEY_VARIANT, "NAME", 0, "Materials of this variant of the scene", 0},
+    {0}};
 
 static error_t parse_option(int key, char *value, struct argp_state *state) {
   Options *options = state->input;
   switch (key) {
   case 'j':
     options->json = 1;
+    return 0;
+  case KEY_AT:
+    options->what.time = cli_real("--at", value, 0, 1e9);
+    return 0;
+  case KEY_ANIMATION:
+    options->what.animation = value;
+    return 0;
+  case KEY_VARIANT:
+    options->what.variant = value;
     return 0;
   case ARGP_KEY_ARG:
     if (options->path) cli_usage("one scene at a time: '%s' is one too many", value);
@@ -101,6 +117,24 @@ static json_t *json_of_cameras(const struct cdl_Scene *scene) {
   return list;
 }
 
+static json_t *json_of_animations(const struct cdl_Scene *scene) {
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < scene->animation_count; i++) {
+    const cdl_SceneAnimation *a = &scene->animations[i];
+    json_array_append_new(list,
+                          json_pack("{s:s, s:f, s:f, s:I}", "name", a->name, "begin", a->begin,
+                                    "end", a->end, "channels", (json_int_t)a->channels));
+  }
+  return list;
+}
+
+static json_t *json_of_variants(const struct cdl_Scene *scene) {
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < scene->variant_count; i++)
+    json_array_append_new(list, json_string(scene->variants[i]));
+  return list;
+}
+
 static json_t *json_of_extensions(const struct cdl_Scene *scene) {
   json_t *lists[3] = {json_array(), json_array(), json_array()};
   for (uint32_t i = 0; i < scene->extension_count; i++)
@@ -119,7 +153,7 @@ static json_t *json_of_bounds(const struct cdl_Scene *scene) {
 static cdl_Status print_json(const struct cdl_Scene *scene, const Totals *totals) {
   json_t *root = json_pack(
       "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:I, s:I, s:o, s:o, "
-      "s:I, s:f}",
+      "s:o, s:o, s:I, s:f}",
       "scene", scene->path, "sha256", scene->sha256, "meshes", (json_int_t)scene->mesh_count,
       "triangles", (json_int_t)totals->triangles, "unique_triangles",
       (json_int_t)totals->unique_triangles, "instances", (json_int_t)scene->instance_count,
@@ -128,7 +162,8 @@ static cdl_Status print_json(const struct cdl_Scene *scene, const Totals *totals
       (json_int_t)scene->light_count, "emissive_instances", (json_int_t)totals->emissive,
       "environment", scene->environment.present, "media", (json_int_t)scene->medium_count,
       "textures", (json_int_t)scene->texture_count, "images", (json_int_t)scene->image_count,
-      "extensions", json_of_extensions(scene), "bounds", json_of_bounds(scene), "memory_bytes",
+      "animations", json_of_animations(scene), "variants", json_of_variants(scene), "extensions",
+      json_of_extensions(scene), "bounds", json_of_bounds(scene), "memory_bytes",
       (json_int_t)totals->memory, "load_s", scene->load_s);
   char *text = root ? json_dumps(root, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
   json_decref(root);
@@ -164,6 +199,15 @@ static void print_extensions(const struct cdl_Scene *scene) {
 
 static const char *named(const char *name) { return *name ? name : "(no name)"; }
 
+static void print_choices(const struct cdl_Scene *scene) {
+  if (scene->animation_count) printf("animations\n");
+  for (uint32_t i = 0; i < scene->animation_count; i++)
+    printf("  %2u  %.4g to %.4g s  %s\n", i, scene->animations[i].begin, scene->animations[i].end,
+           named(scene->animations[i].name));
+  if (scene->variant_count) printf("variants\n");
+  for (uint32_t i = 0; i < scene->variant_count; i++) printf("      %s\n", scene->variants[i]);
+}
+
 static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
   const float(*b)[3] = scene->bounds;
   printf("%s\n", scene->path);
@@ -189,14 +233,15 @@ static void print_text(const struct cdl_Scene *scene, const Totals *totals) {
   for (uint32_t i = 0; i < scene->material_count; i++)
     printf("  %2u  %-14s %s\n", i, scene_model_name(scene->materials[i].model),
            named(scene->materials[i].name));
+  print_choices(scene);
 }
 
 int cli_info(int argc, char **argv) {
   Options options = {0};
   struct cdl_Scene *scene = NULL;
-  const cdl_SceneOptions rest = {.time = -1};
+  cdl_scene_options_default(&options.what);
   cli_parse(&parser, argc, argv, &options);
-  cdl_Status status = scene_load(&cli_log, options.path, &rest, &scene);
+  cdl_Status status = scene_load(&cli_log, options.path, &options.what, &scene);
   if (status) return status;
   Totals totals = count(scene);
   if (options.json)

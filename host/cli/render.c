@@ -33,7 +33,7 @@ static cdl_Status check_outputs(const RenderOptions *options) {
 
 static cdl_Status load_scene(Render *r) {
   const RenderOptions *o = &r->options;
-  cdl_Status status = cdl_scene_load(&cli_log, o->scene, o->animation_time, &r->scene);
+  cdl_Status status = cdl_scene_load_with(&cli_log, o->scene, &o->what, &r->scene);
   if (status) return status;
   if (o->environment) status = cdl_scene_set_environment(r->scene, &cli_log, o->environment);
   if (status) return status;

@@ -15,6 +15,8 @@ enum {
   KEY_NOISE,
   KEY_CAMERA,
   KEY_AT,
+  KEY_ANIMATION,
+  KEY_VARIANT,
   KEY_ENV,
   KEY_ENV_STRENGTH,
   KEY_BACKGROUND,
@@ -58,7 +60,10 @@ static const struct argp_option option_list[] = {
      "Render a part of the samples, in multiples of 16, for candela merge", 2},
     {"seed", KEY_SEED, "N", 0, "Seed of the random numbers; 0 by default", 2},
     {"max-depth", KEY_MAX_DEPTH, "N", 0, "Scattering events on a path; 16 by default", 2},
-    {"at", KEY_AT, "SECONDS", 0, "Animation time", 3},
+    {"at", KEY_AT, "SECONDS", 0, "Animation time; the pose at rest by default", 3},
+    {"animation", KEY_ANIMATION, "NAME|INDEX", 0,
+     "Show this animation alone; by default the first, and each that moves other things", 3},
+    {"variant", KEY_VARIANT, "NAME", 0, "Materials of this variant of the scene", 3},
     {"env", KEY_ENV, "FILE", 0, "Environment map (latitude and longitude) instead of the scene's",
      3},
     {"env-strength", KEY_ENV_STRENGTH, "X", 0, "Factor of the environment's radiance", 3},
@@ -186,7 +191,13 @@ static int parse_other(int key, const char *value, RenderOptions *options) {
   cdl_Settings *s = &options->settings;
   switch (key) {
   case KEY_AT:
-    options->animation_time = cli_real("--at", value, 0, 1e9);
+    options->what.time = cli_real("--at", value, 0, 1e9);
+    break;
+  case KEY_ANIMATION:
+    options->what.animation = value;
+    break;
+  case KEY_VARIANT:
+    options->what.variant = value;
     break;
   case KEY_ENV:
     options->environment = value;
@@ -285,7 +296,8 @@ static void check_together(RenderOptions *options) {
 }
 
 void render_parse(int argc, char **argv, RenderOptions *options) {
-  *options = (RenderOptions){.animation_time = -1, .environment_strength = 1};
+  *options = (RenderOptions){.environment_strength = 1};
+  cdl_scene_options_default(&options->what);
   cdl_settings_default(&options->settings);
   options->settings.samples = 0;
   cli_parse(&parser, argc, argv, options);

@@ -13,7 +13,7 @@ typedef struct RenderOptions {
   int output_count;
   cdl_Settings settings;
   cdl_Display display;
-  double animation_time; /* s; negative: the pose at rest */
+  cdl_SceneOptions what; /* of the scene */
   const char *environment;
   double environment_strength;
   int has_background;

@@ -32,10 +32,21 @@ static void rehash(cdl_Scene *scene, const char *what, const void *data, size_t 
 
 cdl_Status cdl_scene_load(const cdl_Log *log, const char *path, double time, cdl_Scene **scene) {
   const cdl_SceneOptions options = {.time = time};
+  return cdl_scene_load_with(log, path, &options, scene);
+}
+
+void cdl_scene_options_default(cdl_SceneOptions *options) {
+  *options = (cdl_SceneOptions){.time = -1};
+}
+
+cdl_Status cdl_scene_load_with(const cdl_Log *log, const char *path, const cdl_SceneOptions *o,
+                               cdl_Scene **scene) {
   const double start = clock_now();
-  cdl_Status status = scene_load(log, path, &options, scene);
+  cdl_Status status = scene_load(log, path, o, scene);
   if (status) return status;
-  if (time >= 0) rehash(*scene, "time", &time, sizeof time);
+  if (o->time >= 0) rehash(*scene, "time", &o->time, sizeof o->time);
+  if (o->animation) rehash(*scene, "animation", o->animation, strlen(o->animation));
+  if (o->variant) rehash(*scene, "variant", o->variant, strlen(o->variant));
   (*scene)->load_s = clock_now() - start;
   return CDL_OK;
 }

@@ -10,23 +10,27 @@ static void store_unit(const double v[3], float *out) {
   for (int c = 0; n > 0 && c < 3; c++) out[c] = (float)(v[c] / n);
 }
 
-void mesh_move_vertex(const Matrix *to, size_t i, cdl_SceneMesh *mesh) {
+uint8_t mesh_move_vertex(const Matrix *to, size_t i, cdl_SceneMesh *mesh) {
   double in[3], out[3], turn[9];
+  matrix_cofactors(to, turn);
+  int mirrors = to->m[0] * turn[0] + to->m[1] * turn[1] + to->m[2] * turn[2] < 0;
+  double side = mirrors ? -1 : 1;
   for (int c = 0; c < 3; c++) in[c] = mesh->positions[3 * i + c];
   matrix_apply(to, in, 1, out);
   for (int c = 0; c < 3; c++) mesh->positions[3 * i + c] = (float)out[c];
   if (mesh->normals) {
     const float *n = mesh->normals + 3 * i;
-    matrix_cofactors(to, turn);
     for (int r = 0; r < 3; r++)
-      out[r] = turn[3 * r] * n[0] + turn[3 * r + 1] * n[1] + turn[3 * r + 2] * n[2];
+      out[r] = side * (turn[3 * r] * n[0] + turn[3 * r + 1] * n[1] + turn[3 * r + 2] * n[2]);
     store_unit(out, mesh->normals + 3 * i);
   }
   if (mesh->tangents) {
     for (int c = 0; c < 3; c++) in[c] = mesh->tangents[4 * i + c];
     matrix_apply(to, in, 0, out);
     store_unit(out, mesh->tangents + 4 * i);
+    mesh->tangents[4 * i + 3] *= (float)side;
   }
+  return (uint8_t)mirrors;
 }
 
 static void *copy_of(const void *from, size_t size, int *failed) {

@@ -13,7 +13,7 @@ extern "C" {
 typedef struct Builder {
   Document *doc;
   struct cdl_Scene *scene;
-  double time;             /* animation time, s; below 0: the rest pose */
+  uint32_t variant;        /* of KHR_materials_variants, or CDL_NONE */
   uint32_t *texture_map;   /* glTF texture -> scene texture, or CDL_NONE */
   uint32_t *image_map;     /* glTF image -> scene image, or CDL_NONE */
   uint32_t *image_sources; /* scene image -> glTF image, or CDL_NONE: not of glTF */
@@ -70,9 +70,18 @@ cdl_Status gltf_build(Builder *builder);
 /* tangent.c: fills mesh->tangents from positions, normals (where present) and uv[uv_set]. */
 cdl_Status mesh_make_tangents(cdl_SceneMesh *mesh, uint32_t uv_set);
 
-/* animation.c: node transforms at builder->time; out has 10 numbers for each node (translation,
- * rotation, scale) and `moved` says which nodes an animation touches. */
-cdl_Status animate_nodes(Builder *builder, double *trs, uint8_t *moved);
+/* variant.c: the index of a variant; NULL is CDL_NONE. CDL_USAGE for an unknown name lists what
+ * there is. */
+cdl_Status variant_find(const Document *doc, const char *name, uint32_t *index);
+
+/* Lists the names of the variants. */
+cdl_Status build_variants(Builder *builder);
+
+/* animation.c: lists the animations. */
+cdl_Status build_animations(Builder *builder);
+
+/* The material of a primitive in a variant; `otherwise` where the variant does not change it. */
+uint32_t variant_material(const json_t *primitive, uint32_t variant, uint32_t otherwise);
 
 /* metals.c: RGB eta and k of a named metal; 0 when it is not known. */
 int metal_index(const char *name, float eta[3], float k[3]);

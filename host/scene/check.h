@@ -27,6 +27,9 @@ cdl_Status check_animations(Document *doc);
 /* Values: finite, unit where they must be, within declared bounds, indices below vertex counts. */
 cdl_Status check_mesh_data(Document *doc);
 
+/* Joints that a skin has, weights that are not negative, as many of them as morph targets. */
+cdl_Status check_deformation(Document *doc);
+
 /* Fills doc->images with encoded bytes of a kind that can be decoded, or none. */
 cdl_Status check_images(Document *doc);
 

@@ -71,11 +71,27 @@ static const Semantic *find_semantic(const char *name, unsigned long *set) {
   return NULL;
 }
 
+/* Morph targets hold differences: those of tangents leave their handedness, those of texture
+ * coordinates and colours may be signed. */
+static int target_allowed(const Place *place, const Semantic *semantic, const Accessor *a) {
+  int handed = semantic->narrowest == 4 && semantic->widest == 4;
+  uint32_t normalized =
+      strcmp(semantic->name, "COLOR_") && strcmp(semantic->name, "TEXCOORD_") ? 0 : INTEGERS;
+  uint32_t quantized = place->quantized ? semantic->quantized & SIGNED : 0;
+  if (semantic - semantics >= JOINTS || a->columns != 1) return 0;
+  if (handed ? a->width != 3 : a->width < semantic->narrowest || a->width > semantic->widest)
+    return 0;
+  if (a->component == GL_FLOAT) return 1;
+  if (normalized & BIT(a->component) && a->normalized) return 1;
+  return (quantized & BIT(a->component)) != 0 &&
+         (semantic->normalized == 2 || (int)a->normalized == semantic->normalized);
+}
+
 static int format_allowed(const Place *place, const Semantic *semantic, const Accessor *a) {
   uint32_t bit = BIT(a->component);
   uint32_t allowed = semantic->components | (place->quantized ? semantic->quantized : 0);
+  if (place->target >= 0) return target_allowed(place, semantic, a);
   if (a->columns != 1 || a->width < semantic->narrowest || a->width > semantic->widest) return 0;
-  /* Morph targets hold differences, which may be quantised as signed integers. */
   if (!(allowed & bit)) return 0;
   if (a->component == GL_FLOAT || semantic->normalized == 2) {
     int core = (semantic->components & bit) && a->component != GL_FLOAT && !place->quantized;

@@ -4,6 +4,8 @@
 
 #include <tiny_gltf.h>
 
+#include <map>
+#include <utility>
 #include <vector>
 
 #include "scene/build.h"
@@ -31,6 +33,7 @@ private:
   /* gltf_node.cpp */
   void place_nodes();
   Matrix local_matrix(size_t node) const;
+  bool is_shown(size_t node) const;
   std::vector<uint32_t> shown_nodes() const;
   void add_node(uint32_t node);
   void add_camera(uint32_t node);
@@ -42,18 +45,19 @@ private:
   void grow_bounds(const cdl_SceneMesh &mesh, const Matrix &to_world);
 
   /* gltf_mesh.cpp */
-  PrimitiveSource primitive_source(uint32_t mesh, size_t number) const;
-  const std::vector<uint32_t> &mesh_primitives(uint32_t mesh);
-  std::vector<uint32_t> skinned_primitives(uint32_t node);
+  PrimitiveSource primitive_source(uint32_t mesh, size_t number,
+                                   const std::vector<double> &weights) const;
+  std::vector<double> morph_weights(uint32_t node) const;
+  const std::vector<uint32_t> &mesh_primitives(uint32_t node);
+  void add_skinned(uint32_t node);
   std::vector<Matrix> joint_matrices(uint32_t skin) const;
 
   Builder *builder;
   tinygltf::Model model;
-  std::vector<double> trs;    /* ten a node: translation, rotation, scale */
-  std::vector<uint8_t> moved; /* by an animation: its matrix does not count */
   std::vector<Matrix> world;
-  std::vector<std::vector<uint32_t>> meshes; /* glTF mesh -> scene meshes, once made */
-  std::vector<uint8_t> made;
+  std::vector<uint8_t> visible; /* a node and all above it: KHR_node_visibility */
+  /* glTF mesh and weights of its morph targets -> scene meshes, once made */
+  std::map<std::pair<uint32_t, std::vector<double>>, std::vector<uint32_t>> meshes;
 };
 
 #endif

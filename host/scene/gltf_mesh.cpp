@@ -2,7 +2,8 @@
 #include "scene/accessor.h"
 #include "scene/gltf.h"
 
-PrimitiveSource GltfScene::primitive_source(uint32_t mesh, size_t number) const {
+PrimitiveSource GltfScene::primitive_source(uint32_t mesh, size_t number,
+                                            const std::vector<double> &weights) const {
   const tinygltf::Primitive &primitive = model.meshes[mesh].primitives[number];
   auto attribute = [&](const char *name) {
     auto found = primitive.attributes.find(name);
@@ -18,28 +19,43 @@ PrimitiveSource GltfScene::primitive_source(uint32_t mesh, size_t number) const 
   source.uv[0] = attribute("TEXCOORD_0");
   source.uv[1] = attribute("TEXCOORD_1");
   source.color = attribute("COLOR_0");
-  source.joints = attribute("JOINTS_0");
-  source.weights = attribute("WEIGHTS_0");
   source.indices = json_get_index(json, "indices");
-  source.material = index_of(primitive.material);
+  source.material = variant_material(json, builder->variant, index_of(primitive.material));
   source.mode = primitive.mode < 0 ? TINYGLTF_MODE_TRIANGLES : (uint32_t)primitive.mode;
   source.name = model.meshes[mesh].name.c_str();
+  source.json = json;
+  source.weights = weights.data();
+  source.weight_count = weights.size();
   return source;
 }
 
-const std::vector<uint32_t> &GltfScene::mesh_primitives(uint32_t mesh) {
-  if (made[mesh]) return meshes[mesh];
+/* A node's weights count before those of its mesh; without any, all are 0. */
+std::vector<double> GltfScene::morph_weights(uint32_t node) const {
+  uint32_t mesh = (uint32_t)model.nodes[node].mesh;
+  const json_t *json = json_array_get(json_object_get(builder->doc->root, "nodes"), node);
+  const json_t *given = json_object_get(json, "weights");
+  json = json_array_get(json_object_get(builder->doc->root, "meshes"), mesh);
+  if (!given) given = json_object_get(json, "weights");
+  std::vector<double> weights;
+  if (model.meshes[mesh].primitives[0].targets.empty()) return weights;
+  for (size_t i = 0; i < json_array_size(given); i++)
+    weights.push_back(json_number_value(json_array_get(given, i)));
+  return weights;
+}
+
+const std::vector<uint32_t> &GltfScene::mesh_primitives(uint32_t node) {
+  uint32_t mesh = (uint32_t)model.nodes[node].mesh;
+  std::vector<double> weights = morph_weights(node);
+  auto found = meshes.find({mesh, weights});
+  if (found != meshes.end()) return found->second;
+  std::vector<uint32_t> made;
   for (size_t i = 0; i < model.meshes[mesh].primitives.size(); i++) {
-    PrimitiveSource source = primitive_source(mesh, i);
+    PrimitiveSource source = primitive_source(mesh, i, weights);
     uint32_t index;
     check(build_primitive(builder, &source, &index));
-    if (index != CDL_NONE) meshes[mesh].push_back(index);
-    if (!model.meshes[mesh].primitives[i].targets.empty())
-      document_note(builder->doc, "targets", "/meshes",
-                    "morph targets are not supported; the base shape is shown.");
+    if (index != CDL_NONE) made.push_back(index);
   }
-  made[mesh] = 1;
-  return meshes[mesh];
+  return meshes[{mesh, weights}] = made;
 }
 
 std::vector<Matrix> GltfScene::joint_matrices(uint32_t index) const {
@@ -65,19 +81,21 @@ std::vector<Matrix> GltfScene::joint_matrices(uint32_t index) const {
   return joints;
 }
 
-std::vector<uint32_t> GltfScene::skinned_primitives(uint32_t node) {
-  uint32_t mesh = (uint32_t)model.nodes[node].mesh;
+/* Joints say where a skinned primitive lies, and its node does not; primitives of the same mesh
+ * that have no joints stay with the node. */
+void GltfScene::add_skinned(uint32_t node) {
+  uint32_t mesh = (uint32_t)model.nodes[node].mesh, object = add_object(node, 0);
   std::vector<Matrix> joints = joint_matrices((uint32_t)model.nodes[node].skin);
-  std::vector<uint32_t> made_now;
+  std::vector<double> weights = morph_weights(node);
   for (size_t i = 0; i < model.meshes[mesh].primitives.size(); i++) {
-    PrimitiveSource source = primitive_source(mesh, i);
+    PrimitiveSource source = primitive_source(mesh, i, weights);
     uint32_t index;
     check(build_primitive(builder, &source, &index));
     if (index == CDL_NONE) continue;
-    if (source.joints != CDL_NONE && source.weights != CDL_NONE)
+    bool moved = model.meshes[mesh].primitives[i].attributes.count("JOINTS_0") != 0;
+    if (moved)
       check(skin_mesh(builder, &source, joints.data(), (uint32_t)joints.size(),
                       &builder->scene->meshes[index]));
-    made_now.push_back(index);
+    add_instance(node, index, moved ? matrix_identity() : world[node], object);
   }
-  return made_now;
 }

@@ -22,37 +22,37 @@ char *copy(const std::string &text) {
   return made;
 }
 
-void put(const std::vector<double> &from, double *to) { std::copy(from.begin(), from.end(), to); }
-
 } // namespace
 
 Matrix GltfScene::local_matrix(size_t node) const {
-  const double *t = &trs[10 * node];
   const tinygltf::Node &n = model.nodes[node];
-  if (!moved[node] && n.matrix.size() == 16) return matrix_from_columns(n.matrix.data());
+  double t[10] = {0, 0, 0, 0, 0, 0, 1, 1, 1, 1};
+  if (n.matrix.size() == 16) return matrix_from_columns(n.matrix.data());
+  std::copy(n.translation.begin(), n.translation.end(), t);
+  std::copy(n.rotation.begin(), n.rotation.end(), t + 3);
+  std::copy(n.scale.begin(), n.scale.end(), t + 7);
   return matrix_from_trs(t, t + 3, t + 7);
+}
+
+bool GltfScene::is_shown(size_t node) const {
+  const json_t *json = json_array_get(json_object_get(builder->doc->root, "nodes"), node);
+  return !json_is_false(
+      json_object_get(json_get_extension(json, "KHR_node_visibility"), "visible"));
 }
 
 /* Parents before children, without recursion: graphs may be deep. */
 void GltfScene::place_nodes() {
   size_t count = model.nodes.size();
-  trs.assign(10 * count, 0);
-  moved.assign(count, 0);
   world.assign(count, matrix_identity());
+  visible.assign(count, 0);
   std::vector<uint8_t> is_child(count, 0);
-  for (size_t i = 0; i < count; i++) {
-    double *t = &trs[10 * i];
-    t[6] = t[7] = t[8] = t[9] = 1;
-    put(model.nodes[i].translation, t);
-    put(model.nodes[i].rotation, t + 3);
-    put(model.nodes[i].scale, t + 7);
+  for (size_t i = 0; i < count; i++)
     for (int child : model.nodes[i].children) is_child[(size_t)child] = 1;
-  }
-  if (builder->time >= 0) check(animate_nodes(builder, trs.data(), moved.data()));
   std::vector<uint32_t> open;
   for (size_t i = 0; i < count; i++)
     if (!is_child[i]) {
       world[i] = local_matrix(i);
+      visible[i] = is_shown(i);
       open.push_back((uint32_t)i);
     }
   while (!open.empty()) {
@@ -61,6 +61,7 @@ void GltfScene::place_nodes() {
     for (int child : model.nodes[parent].children) {
       Matrix local = local_matrix((size_t)child);
       world[(size_t)child] = matrix_multiply(&world[parent], &local);
+      visible[(size_t)child] = visible[parent] && is_shown((size_t)child);
       open.push_back((uint32_t)child);
     }
   }
@@ -127,7 +128,7 @@ void GltfScene::grow_bounds(const cdl_SceneMesh &mesh, const Matrix &to_world) {
         in[3] = {mesh.positions[3 * i], mesh.positions[3 * i + 1], mesh.positions[3 * i + 2]};
     matrix_apply(&to_world, in, 1, at);
     for (int c = 0; c < 3; c++) {
-      if (std::fabs(at[c]) > FARTHEST)
+      if (!(std::fabs(at[c]) <= FARTHEST))
         throw Failed{document_fail(builder->doc, "/meshes", "VALUE_NOT_IN_RANGE",
                                    "a vertex lies at %g m; %g m is the limit.", at[c], FARTHEST)};
       builder->scene->bounds[0][c] = std::min(builder->scene->bounds[0][c], (float)at[c]);
@@ -204,13 +205,8 @@ std::vector<Matrix> GltfScene::gpu_instances(uint32_t node) const {
 }
 
 void GltfScene::add_instances(uint32_t node) {
-  if (model.nodes[node].skin >= 0) {
-    uint32_t object = add_object(node, 0);
-    for (uint32_t mesh : skinned_primitives(node))
-      add_instance(node, mesh, matrix_identity(), object);
-    return;
-  }
-  const std::vector<uint32_t> &primitives = mesh_primitives((uint32_t)model.nodes[node].mesh);
+  if (model.nodes[node].skin >= 0) return add_skinned(node);
+  const std::vector<uint32_t> &primitives = mesh_primitives(node);
   std::vector<Matrix> placed = gpu_instances(node);
   for (size_t i = 0; i < placed.size(); i++) {
     uint32_t object = add_object(node, placed.size() > 1 ? (uint32_t)i + 1 : 0);
@@ -221,14 +217,13 @@ void GltfScene::add_instances(uint32_t node) {
 void GltfScene::add_node(uint32_t node) {
   const json_t *json = json_array_get(json_object_get(builder->doc->root, "nodes"), node);
   const json_t *light = json_get_extension(json, "KHR_lights_punctual");
-  if (model.nodes[node].mesh >= 0) add_instances(node);
+  if (model.nodes[node].mesh >= 0 && visible[node]) add_instances(node);
   if (model.nodes[node].camera >= 0) add_camera(node);
-  if (light) check(build_light(builder, json_get_index(light, "light"), &world[node]));
+  if (light && visible[node])
+    check(build_light(builder, json_get_index(light, "light"), &world[node]));
 }
 
 void GltfScene::build() {
-  meshes.resize(model.meshes.size());
-  made.assign(model.meshes.size(), 0);
   place_nodes();
   for (uint32_t node : shown_nodes()) add_node(node);
 }

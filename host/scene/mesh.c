@@ -100,9 +100,12 @@ static cdl_Status read_attributes(Builder *builder, const PrimitiveSource *sourc
     *parts[i].to = accessor_floats(doc, parts[i].accessor);
     if (!*parts[i].to) return document_out_of_memory(doc);
   }
+  cdl_Status status =
+      source->color == CDL_NONE ? CDL_OK : read_colors(builder, source->color, mesh);
+  if (!status) status = morph_mesh(builder, source, mesh);
   normalise(mesh->normals, mesh->vertex_count, 3);
   normalise(mesh->tangents, mesh->vertex_count, 4);
-  return source->color == CDL_NONE ? CDL_OK : read_colors(builder, source->color, mesh);
+  return status;
 }
 
 /* Tangents matter to normal maps and to anisotropy alone. */

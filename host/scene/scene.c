@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "scene/build.h"
 #include "scene/check.h"
+#include "scene/pose.h"
 
 char *string_copy(const char *text) { return strdup(text ? text : ""); }
 
@@ -71,6 +72,8 @@ static cdl_Status build_scene(Builder *builder) {
   Document *doc = builder->doc;
   uint32_t index = scene_index(doc);
   cdl_Status status = build_extensions(builder);
+  if (!status) status = build_animations(builder);
+  if (!status) status = build_variants(builder);
   if (!status) status = build_materials(builder);
   if (!status && index != DOCUMENT_NONE)
     status = build_scene_extensions(builder, index,
@@ -85,11 +88,11 @@ static cdl_Status build_scene(Builder *builder) {
 static cdl_Status convert(Document *doc, const cdl_SceneOptions *options, struct cdl_Scene **out) {
   Builder builder = {.doc = doc,
                      .scene = calloc(1, sizeof *builder.scene),
-                     .time = options ? options->time : -1,
                      .texture_map = none_map(json_object_get(doc->root, "textures")),
                      .image_map = none_map(json_object_get(doc->root, "images")),
                      .default_material = CDL_NONE};
-  cdl_Status status = CDL_BAD_INPUT;
+  cdl_Status status = variant_find(doc, options ? options->variant : NULL, &builder.variant);
+  if (status) goto done;
   if (!builder.scene || !builder.texture_map || !builder.image_map) {
     status = document_out_of_memory(doc);
     goto done;
@@ -121,6 +124,8 @@ cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptio
   double start = clock_now();
   cdl_Status status = document_open(log, path, &doc);
   if (!status) status = check_document(&doc);
+  if (!status && options && (options->time >= 0 || options->animation))
+    status = pose_document(&doc, fmax(options->time, 0), options->animation);
   if (!status) status = convert(&doc, options, scene);
   document_close(&doc);
   if (!status) (*scene)->load_s = clock_now() - start;
@@ -150,6 +155,8 @@ void scene_free(struct cdl_Scene *scene) {
   for (uint32_t i = 0; i < scene->camera_count; i++) free(scene->cameras[i].name);
   for (uint32_t i = 0; i < scene->extension_count; i++) free(scene->extensions[i].name);
   for (uint32_t i = 0; i < scene->object_count; i++) free(scene->object_names[i]);
+  for (uint32_t i = 0; i < scene->animation_count; i++) free(scene->animations[i].name);
+  for (uint32_t i = 0; i < scene->variant_count; i++) free(scene->variants[i]);
   free(scene->meshes);
   free(scene->instances);
   free(scene->materials);
@@ -161,6 +168,8 @@ void scene_free(struct cdl_Scene *scene) {
   free(scene->media);
   free(scene->extensions);
   free(scene->object_names);
+  free(scene->animations);
+  free(scene->variants);
   free(scene->path);
   free(scene);
 }

@@ -147,6 +147,13 @@ typedef struct cdl_SceneExtension {
   cdl_ExtensionState state;
 } cdl_SceneExtension;
 
+/* An animation that the file has, whether it is shown or not. */
+typedef struct cdl_SceneAnimation {
+  char *name;        /* never NULL, may be empty */
+  double begin, end; /* of its keys, s */
+  uint32_t channels;
+} cdl_SceneAnimation;
+
 struct cdl_Scene {
   char *path;
   cdl_SceneMesh *meshes;
@@ -160,8 +167,10 @@ struct cdl_Scene {
   cdl_SceneMedium *media;
   cdl_SceneExtension *extensions;
   char **object_names;
+  cdl_SceneAnimation *animations;
+  char **variants; /* names of KHR_materials_variants */
   uint32_t mesh_count, instance_count, material_count, texture_count, image_count, light_count,
-      camera_count, medium_count, extension_count, object_count;
+      camera_count, medium_count, extension_count, object_count, animation_count, variant_count;
   uint32_t medium; /* what fills the rest of the scene: index or CDL_NONE */
   cdl_SceneEnvironment environment;
   float bounds[2][3]; /* of all instances in the world; min > max when there are none */
@@ -169,14 +178,10 @@ struct cdl_Scene {
   double load_s;      /* wall seconds that loading took */
 };
 
-typedef struct cdl_SceneOptions {
-  double time; /* animation time, s */
-} cdl_SceneOptions;
-
 /* Loads a .gltf or .glb with all it refers to. Files outside the scene's folder are refused. A
  * damaged file is CDL_BAD_INPUT with one line that names file, JSON pointer and the Khronos
- * validator's code; what is only odd is noted. *scene is set on success alone; free it with
- * scene_free(). */
+ * validator's code; an unknown animation or variant is CDL_USAGE; what is only odd is noted. NULL
+ * options are the pose at rest. *scene is set on success alone; free it with scene_free(). */
 cdl_Status scene_load(const cdl_Log *log, const char *path, const cdl_SceneOptions *options,
                       struct cdl_Scene **scene);
 

@@ -234,7 +234,7 @@ static cdl_Status check_extensions(Document *doc, const json_t *extensions, cons
   return CDL_OK;
 }
 
-static const Member *find_member(const Schema *schema, const char *name) {
+const Member *schema_member(const Schema *schema, const char *name) {
   for (const Member *m = schema->members; m->name; m++)
     if (strcmp(m->name, name) == 0) return m;
   return NULL;
@@ -245,7 +245,7 @@ static cdl_Status check_member(Document *doc, const json_t *value, const Schema 
   const char *name = frame->key;
   if (strcmp(name, "extensions") == 0) return check_extensions(doc, value, schema, frame);
   if (strcmp(name, "extras") == 0) return CDL_OK;
-  const Member *member = find_member(schema, name);
+  const Member *member = schema_member(schema, name);
   if (!member) {
     char key[128];
     snprintf(key, sizeof key, "%s.%.80s", schema->name, name);

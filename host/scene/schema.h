@@ -62,6 +62,20 @@ extern const Schema schema_root, schema_scene, schema_node, schema_mesh, schema_
 /* Ended by a NULL name. */
 extern const ExtensionPlace schema_extensions[];
 
+/* The member of that name; NULL: there is none. */
+const Member *schema_member(const Schema *schema, const char *name);
+
+/* A number, a flag or an array of numbers in the document, which may be absent as yet. */
+typedef struct SchemaPlace {
+  json_t *object; /* that has the member */
+  const Member *member;
+  size_t element; /* of an array; DOCUMENT_NONE: the whole value */
+} SchemaPlace;
+
+/* Follows a JSON pointer (RFC 6901) to a value of which the tables know type and range, and which
+ * an animation may change; 0 when it leads to none, or when the object around it is absent. */
+int schema_resolve(const Document *doc, const char *pointer, SchemaPlace *place);
+
 /* Holds the whole document against the tables. */
 cdl_Status schema_check(Document *doc);
 

@@ -103,6 +103,8 @@ static const Member instancing[] = {INDEX_MAP("attributes", REQUIRED, "accessors
 static SCHEMA(schema_instancing, "EXT_mesh_gpu_instancing", instancing);
 static const Member pointer[] = {STRING("pointer", REQUIRED), END};
 static SCHEMA(schema_pointer, "KHR_animation_pointer", pointer);
+static const Member visibility[] = {FLAG("visible"), END};
+static SCHEMA(schema_visibility, "KHR_node_visibility", visibility);
 
 /* Our own: what they mean is said in the documentation of the scene format. */
 #define SHADE(n) COLOUR(n, EITHER, 1), INFO(n "Texture")
@@ -208,6 +210,7 @@ const ExtensionPlace schema_extensions[] = {
     {"KHR_materials_variants", &schema_primitive, &schema_mappings},
     {"KHR_materials_variants", &schema_root, &schema_variants},
     {"KHR_materials_volume", &schema_material, &schema_volume},
+    {"KHR_node_visibility", &schema_node, &schema_visibility},
     {"KHR_texture_basisu", &schema_texture, &schema_source},
     {"KHR_texture_transform", &schema_normal_info, &schema_transform},
     {"KHR_texture_transform", &schema_occlusion_info, &schema_transform},
