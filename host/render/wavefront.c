@@ -89,15 +89,9 @@ static cdl_Status gather(cdl_Wavefront *w) {
 }
 
 static cdl_Status shade_models(cdl_Wavefront *w) {
-  static const cdl_KernelId kernels[] = {
-      [CDL_MODEL_UNLIT] = CDL_KERNEL_shade_unlit,
-      [CDL_MODEL_MIRROR] = CDL_KERNEL_shade_mirror,
-      [CDL_MODEL_DIELECTRIC] = CDL_KERNEL_shade_dielectric,
-      [CDL_MODEL_DIFFUSE] = CDL_KERNEL_shade_diffuse,
-      [CDL_MODEL_CONDUCTOR] = CDL_KERNEL_shade_conductor,
-      [CDL_MODEL_RETROREFLECTOR] = CDL_KERNEL_shade_retroreflector,
-      [CDL_MODEL_GLTF] = CDL_KERNEL_shade_gltf,
-  };
+#define SHADE_KERNEL(model, name, words) [CDL_MODEL_##model] = CDL_KERNEL_shade_##name,
+  static const cdl_KernelId kernels[] = {CDL_SHADED_MODELS(SHADE_KERNEL)};
+#undef SHADE_KERNEL
   cdl_Status status = CDL_OK;
   for (uint32_t model = 0; model < CDL_MODEL_INTERFACE && !status; model++) {
     uint32_t queue = CDL_QUEUE_MODELS + 2 * model;

@@ -75,13 +75,10 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   list_add(list, f->media, CDL_KERNEL_medium_vertex);
   list_add(list, w->has_lights, CDL_KERNEL_sample_light);
   list_add(list, f->passable, CDL_KERNEL_pass);
-  list_add(list, models[CDL_MODEL_UNLIT], CDL_KERNEL_shade_unlit);
-  list_add(list, models[CDL_MODEL_MIRROR], CDL_KERNEL_shade_mirror);
-  list_add(list, models[CDL_MODEL_DIELECTRIC], CDL_KERNEL_shade_dielectric);
-  list_add(list, models[CDL_MODEL_DIFFUSE], CDL_KERNEL_shade_diffuse);
-  list_add(list, models[CDL_MODEL_CONDUCTOR], CDL_KERNEL_shade_conductor);
-  list_add(list, models[CDL_MODEL_RETROREFLECTOR], CDL_KERNEL_shade_retroreflector);
-  list_add(list, models[CDL_MODEL_GLTF], CDL_KERNEL_shade_gltf);
+#define SHADE_KERNEL(model, name, words)                                                           \
+  list_add(list, models[CDL_MODEL_##model], CDL_KERNEL_shade_##name);
+  CDL_SHADED_MODELS(SHADE_KERNEL)
+#undef SHADE_KERNEL
   list_add(list, f->media, CDL_KERNEL_shade_medium);
   list_add(list, w->has_lights, CDL_KERNEL_occlude);
   list_add(list, 1, CDL_KERNEL_film);

@@ -18,6 +18,29 @@ static const ParamMember retroreflector[] = {ALPHA(CDL_RETROREFLECTOR_ALPHA, 0.0
                                              {"ior", CDL_RETROREFLECTOR_IOR, 1, {1.5f}, NULL, 0},
                                              END};
 
+static const ParamMember oren_nayar[] = {
+    {"roughness", CDL_OREN_NAYAR_ROUGHNESS, 1, {0.5f}, "roughnessTexture", CHANNEL_R}, END};
+
+/* The defaults of 2012; glass of 1.5, solid and opaque, from 2015. */
+#define DISNEY(name, word, value)                                                                  \
+  { name, CDL_DISNEY_##word, 1, {value}, name "Texture", CHANNEL_R }
+static const ParamMember disney[] = {DISNEY("metallic", METALLIC, 0),
+                                     DISNEY("roughness", ROUGHNESS, 0.5f),
+                                     DISNEY("anisotropic", ANISOTROPIC, 0),
+                                     DISNEY("specular", SPECULAR, 0.5f),
+                                     DISNEY("specularTint", SPECULAR_TINT, 0),
+                                     DISNEY("sheen", SHEEN, 0),
+                                     DISNEY("sheenTint", SHEEN_TINT, 0.5f),
+                                     DISNEY("clearcoat", CLEARCOAT, 0),
+                                     DISNEY("clearcoatGloss", CLEARCOAT_GLOSS, 1),
+                                     DISNEY("subsurface", SUBSURFACE, 0),
+                                     DISNEY("specTrans", SPEC_TRANS, 0),
+                                     {"ior", CDL_DISNEY_IOR, 1, {1.5f}, NULL, 0},
+                                     DISNEY("diffTrans", DIFF_TRANS, 0),
+                                     DISNEY("flatness", FLATNESS, 0),
+                                     {"thin", CDL_DISNEY_THIN, 1, {0}, NULL, 0},
+                                     END};
+
 typedef struct Model {
   const char *name;
   uint32_t model;
@@ -35,6 +58,8 @@ static const Model models[] = {
     {"retroreflector", CDL_MODEL_RETROREFLECTOR, REFLECTANCE, 1, retroreflector},
     {"conductor", CDL_MODEL_CONDUCTOR, NULL, NULL, 1, conductor},
     {"dielectric", CDL_MODEL_DIELECTRIC, "transmittance", "transmittanceTexture", 1, dielectric},
+    {"oren_nayar", CDL_MODEL_OREN_NAYAR, REFLECTANCE, 0.5f, oren_nayar},
+    {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.8f, disney},
     {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
 
@@ -76,10 +101,12 @@ static void read_flags(const json_t *json, cdl_SceneMaterial *material) {
   material->masking = separable ? CDL_MASKING_SEPARABLE : CDL_MASKING_CORRELATED;
   material->thin = json_is_true(json_object_get(json, "thin"));
   material->energy_compensation = json_is_true(json_object_get(json, "energyCompensation"));
-  material->transmits = material->model == CDL_MODEL_DIELECTRIC;
   float alpha[2] = {0, 0};
   json_get_numbers(json, "alpha", 2, alpha);
-  material->anisotropic = alpha[0] != alpha[1];
+  material->anisotropic = alpha[0] != alpha[1] || json_get_number(json, "anisotropic", 0) != 0;
+  material->transmits = material->model == CDL_MODEL_DIELECTRIC ||
+                        (material->model == CDL_MODEL_DISNEY &&
+                         (json_get_number(json, "specTrans", 0) > 0 || material->thin));
 }
 
 /* Parameters that this renderer knows of but does not act on. */
@@ -124,23 +151,22 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
                                &material->base_texture);
   }
   if (!status) status = build_params(builder, at, json, model->members, material);
+  if (model->model == CDL_MODEL_DISNEY) material->param[CDL_DISNEY_THIN] = (float)material->thin;
   if (!status && model->model == CDL_MODEL_CONDUCTOR)
     status = read_metal(builder, at, json, material);
   return status ? status : note_left_out(builder, at, json, material);
 }
 
 const char *scene_model_name(uint32_t model) {
-  for (size_t i = 0; i < sizeof models / sizeof *models; i++)
-    if (models[i].model == model) return models[i].name;
-  return model == CDL_MODEL_UNLIT ? "unlit" : "gltf";
+#define MODEL_NAME(id, name, words) [CDL_MODEL_##id] = #name,
+  static const char *const names[CDL_MODEL_COUNT] = {CDL_SHADED_MODELS(MODEL_NAME)};
+#undef MODEL_NAME
+  return names[model] ? names[model] : "interface";
 }
 
 uint32_t scene_model_params(uint32_t model) {
-  static const uint32_t words[CDL_MODEL_COUNT] = {
-      [CDL_MODEL_DIELECTRIC] = CDL_DIELECTRIC_PARAMS,
-      [CDL_MODEL_CONDUCTOR] = CDL_CONDUCTOR_PARAMS,
-      [CDL_MODEL_RETROREFLECTOR] = CDL_RETROREFLECTOR_PARAMS,
-      [CDL_MODEL_GLTF] = CDL_GLTF_PARAMS,
-  };
-  return words[model];
+#define MODEL_WORDS(id, name, words) [CDL_MODEL_##id] = words,
+  static const uint32_t counts[CDL_MODEL_COUNT] = {CDL_SHADED_MODELS(MODEL_WORDS)};
+#undef MODEL_WORDS
+  return counts[model];
 }

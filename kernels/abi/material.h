@@ -10,16 +10,33 @@
  * base colour are neighbours. */
 #define CDL_MODEL_UNLIT 0u
 #define CDL_MODEL_MIRROR 1u
-#define CDL_MODEL_DIELECTRIC 2u
-#define CDL_MODEL_CONDUCTOR 3u
-#define CDL_MODEL_RETROREFLECTOR 4u
-#define CDL_MODEL_GLTF 5u
-#define CDL_MODEL_DIFFUSE 6u
-#define CDL_MODEL_INTERFACE 7u /* the boundary of a medium; has no queue of its own */
-#define CDL_MODEL_COUNT 8u
-#define CDL_MODEL_FIRST_LIT CDL_MODEL_CONDUCTOR
+#define CDL_MODEL_DIELECTRIC 2u /* smooth */
+#define CDL_MODEL_ROUGH_DIELECTRIC 3u
+#define CDL_MODEL_CONDUCTOR 4u
+#define CDL_MODEL_PLASTIC 5u
+#define CDL_MODEL_OREN_NAYAR 6u
+#define CDL_MODEL_RETROREFLECTOR 7u
+#define CDL_MODEL_DISNEY 8u
+#define CDL_MODEL_GLTF 9u
+#define CDL_MODEL_GLTF_LAYERED 10u /* glTF with layers that extensions add */
+#define CDL_MODEL_DIFFUSE 11u
+#define CDL_MODEL_INTERFACE 12u /* the boundary of a medium; has no queue of its own */
+#define CDL_MODEL_COUNT 13u
+#define CDL_MODEL_FIRST_LIT CDL_MODEL_ROUGH_DIELECTRIC
 #define CDL_MODEL_FIRST_PARAMETERS CDL_MODEL_DIELECTRIC
-#define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_GLTF
+#define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_GLTF_LAYERED
+
+/* M(MODEL, name, words of parameters) for all that shading kernels are made for. */
+#define CDL_SHADED_MODELS(M)                                                                       \
+  M(UNLIT, unlit, 0)                                                                               \
+  M(MIRROR, mirror, 0)                                                                             \
+  M(DIELECTRIC, dielectric, CDL_DIELECTRIC_PARAMS)                                                 \
+  M(CONDUCTOR, conductor, CDL_CONDUCTOR_PARAMS)                                                    \
+  M(OREN_NAYAR, oren_nayar, CDL_OREN_NAYAR_PARAMS)                                                 \
+  M(RETROREFLECTOR, retroreflector, CDL_RETROREFLECTOR_PARAMS)                                     \
+  M(DISNEY, disney, CDL_DISNEY_PARAMS)                                                             \
+  M(GLTF, gltf, CDL_GLTF_PARAMS)                                                                   \
+  M(DIFFUSE, diffuse, 0)
 
 /* cdl_Material.flags */
 #define CDL_MATERIAL_DOUBLE_SIDED 1u

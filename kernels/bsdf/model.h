@@ -54,6 +54,22 @@
 #define bsdf_params gltf_params
 #define bsdf_evaluate gltf_evaluate
 #define bsdf_sample_model gltf_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_OREN_NAYAR
+#include "bsdf/oren_nayar.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define BsdfParams OrenNayarParams
+#define bsdf_params oren_nayar_params
+#define bsdf_evaluate oren_nayar_evaluate
+#define bsdf_sample_model oren_nayar_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_DISNEY
+#include "bsdf/disney.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 1
+#define BsdfParams DisneyParams
+#define bsdf_params disney_params
+#define bsdf_evaluate disney_evaluate
+#define bsdf_sample_model disney_sample
 #else
 #error "CDL_SHADE_MODEL names no material model that scatters light"
 #endif
