@@ -1,5 +1,5 @@
 /* microfacet.h: reflection by a rough surface of mirrors: GGX or Beckmann normals, Smith masking,
- * sampling of visible normals; anisotropic throughout.
+ * sampling of visible normals, bounded where they reflect; anisotropic throughout.
  *
  * +Z is the surface's normal. alpha is the microfacet alpha along X and Y. */
 #ifndef CDL_BSDF_MICROFACET_H
@@ -69,13 +69,26 @@ CDL_INLINE float microfacet_visible_density(float d, float g1, float cos_h, floa
   return d * g1 * cos_h / cos_o;
 }
 
+/* How much of the cap below the horizon reflection needs, [0,1], wo.z > 0: the directions that
+ * normals seen by wo reflect it to are, on the stretched surface, within a cap that ends at
+ * -bound w.z (Eto and Tokuyoshi 2023, "Bounded VNDF Sampling for Smith-GGX Reflections", eqs. 5 and
+ * 6). Beckmann's normals are drawn unbounded. */
+CDL_INLINE float microfacet_bound(Microfacets m, vec3 wo) {
+  float a = math_min(math_min(m.alpha_x, m.alpha_y), 1.0f);
+  float a2 = a * a;
+  float s = 1.0f + math_safe_sqrt((1.0f - wo.z) * (1.0f + wo.z));
+  float s2 = s * s;
+  float bound = (1.0f - a2) * s2 / fma(a2 * wo.z, wo.z, s2);
+  return m.beckmann ? 1.0f : bound;
+}
+
 /* What one pair of directions has of the lobe, without Fresnel's factor. */
 typedef struct MicrofacetLobe {
   float cos_h;  /* wo.h = wi.h, h halfway between */
   float f_cos;  /* D G / (4 wo.z); 0 unless both directions are above the surface */
-  float pdf;    /* of wi when visible normals are sampled */
+  float pdf;    /* of wi when visible normals are sampled, microfacet_sample_normal */
   float weight; /* f_cos / pdf = G / G1(wo), without the division */
-  float pad;
+  float bounded_pdf, bounded_weight; /* the same for microfacet_sample_reflection */
 } MicrofacetLobe;
 
 CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
@@ -102,29 +115,46 @@ CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   lobe.f_cos = above ? f_cos : 0.0f;
   lobe.pdf = above ? pdf : 0.0f;
   lobe.weight = above ? ratio : 0.0f;
-  lobe.pad = 0.0f;
+  /* (1 + 2 Lambda) wo.z is the length of the stretched wo */
+  float gain = fma(2.0f, lambda_o, 1.0f + microfacet_bound(m, wo)) * (0.5f * g1);
+  lobe.bounded_pdf = lobe.pdf / gain;
+  lobe.bounded_weight = lobe.weight * gain;
   return lobe;
 }
 
-/* A visible normal of a GGX surface of roughness 1: a point of the spherical cap that reflects the
- * unit vector w into the upper hemisphere, and the vector halfway to it (Dupuy and Benyoub 2023).
- */
-CDL_INLINE vec3 microfacet_ggx_visible_normal(vec3 w, float u, float v) {
+/* A visible normal of a GGX surface of roughness 1: a point of the spherical cap above z = -bottom,
+ * and the vector from -w, |w| = 1, to it (Dupuy and Benyoub 2023). bottom = w.z gives all normals
+ * that w sees. */
+CDL_INLINE vec3 microfacet_ggx_cap_normal(vec3 w, float bottom, float u, float v) {
   float sine, cosine;
   math_sincos_2pi(u, &sine, &cosine);
-  float drop = v * (1.0f + w.z); /* 1 - z of the point */
+  float drop = v * (1.0f + bottom); /* 1 - z of the point */
   float radius = math_safe_sqrt(drop * (2.0f - drop));
   return v3(fma(radius, cosine, w.x), fma(radius, sine, w.y), (1.0f - drop) + w.z);
 }
 
-/* A normal drawn from those that wo sees, by microfacet_visible_density: the surface is stretched
- * to roughness 1 and back (Heitz 2018, section 3). u, v in [0,1). */
-CDL_INLINE vec3 microfacet_sample_normal(Microfacets m, vec3 wo, float u, float v) {
+CDL_INLINE vec3 microfacet_ggx_visible_normal(vec3 w, float u, float v) {
+  return microfacet_ggx_cap_normal(w, w.z, u, v);
+}
+
+/* The surface is stretched to roughness 1 and back (Heitz 2018, section 3). */
+CDL_INLINE vec3 microfacet_sample_bounded(Microfacets m, vec3 wo, float bound, float u, float v) {
   vec3 w = v3_normalize(v3(m.alpha_x * wo.x, m.alpha_y * wo.y, math_max(wo.z, 1e-9f)));
-  vec3 ggx = microfacet_ggx_visible_normal(w, u, v);
+  vec3 ggx = microfacet_ggx_cap_normal(w, bound * w.z, u, v);
   vec3 beckmann = beckmann_visible_normal(w, u, v);
   vec3 n = v3_select(m.beckmann, beckmann, ggx);
   return v3_normalize(v3(m.alpha_x * n.x, m.alpha_y * n.y, math_max(n.z, 0.0f)));
+}
+
+/* A normal drawn from those that wo sees, by microfacet_visible_density. u, v in [0,1). */
+CDL_INLINE vec3 microfacet_sample_normal(Microfacets m, vec3 wo, float u, float v) {
+  return microfacet_sample_bounded(m, wo, 1.0f, u, v);
+}
+
+/* wo reflected by a facet that it sees: fewer of these end below the horizon than by
+ * microfacet_sample_normal. Density: MicrofacetLobe.bounded_pdf. */
+CDL_INLINE vec3 microfacet_sample_reflection(Microfacets m, vec3 wo, float u, float v) {
+  return fresnel_reflect(wo, microfacet_sample_bounded(m, wo, microfacet_bound(m, wo), u, v));
 }
 
 #endif
