@@ -35,7 +35,7 @@ clean:
 
 # --- How things are compiled.
 
-PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf
+PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf draco
 NEEDS_COMPILER := $(filter-out deps demo test bench check soak clean,$(or $(MAKECMDGOALS),all))
 ifneq ($(NEEDS_COMPILER),)
 PACKAGE_CFLAGS := $(shell pkg-config --cflags $(PACKAGES))
@@ -54,7 +54,8 @@ COMMON += -MMD -MP $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover
 ALL_CFLAGS = -std=gnu11 $(COMMON) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(COMMON) $(CXXFLAGS)
 LINK = $(CXX) -fopenmp $(if $(SANITIZE),-fsanitize=$(SANITIZE)) $(LDFLAGS)
-LIBS := $(PACKAGE_LIBS) -lm -lpthread
+# meshoptimizer has no pkg-config file.
+LIBS := $(PACKAGE_LIBS) -lmeshoptimizer -lm -lpthread
 
 LIB_SOURCES := $(filter-out host/cli/%,$(wildcard host/*/*.c host/*/*.cpp))
 LIB_OBJECTS := $(LIB_SOURCES:%=$(B)/obj/%.o) $(B)/obj/kernel_sources.c.o
@@ -94,14 +95,14 @@ $(B)/libcandela.so: $(LIB_OBJECTS)
 $(B)/candela: $(CLI_OBJECTS) $(B)/libcandela.a
 	$(call SAY,LINK,$@)$(LINK) $^ $(LIBS) -o $@
 
-# --- Tests: tests/FOLDER/test_NAME.c is a program; other .c files there are linked into each.
+# --- Tests: tests/FOLDER/test_NAME.c is a program; other .c and .cpp files there are linked into each.
 
 TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/%.c=$(B)/tests/%)
 TEST_SCRIPTS := $(filter-out %/common.sh %/common.py,$(wildcard tests/*/*.sh tests/*/*.py))
 # What needs no device: the programs that the sanitizers watch.
-HOST_PROGRAMS := $(filter $(B)/tests/unit/% $(B)/tests/bad_input/%,$(TEST_PROGRAMS))
-test_helpers = $(patsubst %,$(B)/obj/%.o,$(filter-out tests/$(1)/test_%,$(wildcard tests/$(1)/*.c)))
+HOST_PROGRAMS := $(filter $(B)/tests/unit/% $(B)/tests/bad_input/% $(B)/tests/compression/%,$(TEST_PROGRAMS))
+test_helpers = $(patsubst %,$(B)/obj/%.o,$(filter-out tests/$(1)/test_%,$(wildcard tests/$(1)/*.c tests/$(1)/*.cpp)))
 
 tests: $(TEST_PROGRAMS)
 $(B)/obj/tests/%: CPPFLAGS += -I.

@@ -32,6 +32,10 @@ size_t accessor_element_size(const Accessor *accessor) {
          rows * component_size(accessor->component);
 }
 
+size_t accessor_packed_size(const Accessor *accessor) {
+  return column_size(accessor) * accessor->columns;
+}
+
 uint32_t read_unsigned(const uint8_t *data, uint32_t component, size_t i) {
   uint16_t half;
   uint32_t word;
@@ -83,21 +87,16 @@ static void read_element(const Accessor *accessor, const uint8_t *data, float *o
 }
 
 static const uint8_t *view_data(const Document *doc, uint32_t view, size_t offset) {
-  const BufferView *v = &doc->views[view];
-  return doc->buffers[v->buffer].data + v->offset + offset;
-}
-
-static int view_is_here(const Document *doc, uint32_t view) {
-  return view == DOCUMENT_NONE || doc->buffers[doc->views[view].buffer].data;
+  return doc->views[view].data + offset;
 }
 
 static int is_here(const Document *doc, const Accessor *a) {
-  return view_is_here(doc, a->view) && (!a->sparse_count || (view_is_here(doc, a->sparse_view) &&
-                                                             view_is_here(doc, a->values_view)));
+  if (a->view != DOCUMENT_NONE && !a->data) return 0;
+  return !a->sparse_count || (doc->views[a->sparse_view].data && doc->views[a->values_view].data);
 }
 
 int accessor_has_data(const Document *doc, const Accessor *a) {
-  return (a->view != DOCUMENT_NONE || a->sparse_count) && is_here(doc, a);
+  return (a->data || a->sparse_count) && is_here(doc, a);
 }
 
 cdl_Status accessor_require(const Document *doc, uint32_t index) {
@@ -106,15 +105,10 @@ cdl_Status accessor_require(const Document *doc, uint32_t index) {
                        "its buffer has no data here, and nothing is fetched from the network.");
 }
 
-static size_t dense_stride(const Document *doc, const Accessor *accessor) {
-  uint32_t stride = doc->views[accessor->view].stride;
-  return stride ? stride : column_size(accessor) * accessor->columns;
-}
-
 /* Plain packed floats, by far the most frequent kind, are copied whole. */
-static void read_dense(const Document *doc, const Accessor *accessor, float *out) {
-  size_t stride = dense_stride(doc, accessor);
-  const uint8_t *data = view_data(doc, accessor->view, accessor->offset);
+static void read_dense(const Accessor *accessor, float *out) {
+  size_t stride = accessor->stride;
+  const uint8_t *data = accessor->data;
   if (accessor->component == GL_FLOAT && stride == 4 * (size_t)accessor->width) {
     memcpy(out, data, accessor->count * stride);
     return;
@@ -127,11 +121,11 @@ float *accessor_floats(const Document *doc, uint32_t index) {
   const Accessor *accessor = &doc->accessors[index];
   float *out = calloc(accessor->count, accessor->width * sizeof *out);
   if (!out) return NULL;
-  if (accessor->view != DOCUMENT_NONE) read_dense(doc, accessor, out);
+  if (accessor->data) read_dense(accessor, out);
   if (!accessor->sparse_count) return out;
   const uint8_t *indices = view_data(doc, accessor->sparse_view, accessor->sparse_offset);
   const uint8_t *values = view_data(doc, accessor->values_view, accessor->values_offset);
-  size_t stride = column_size(accessor) * accessor->columns;
+  size_t stride = accessor_packed_size(accessor);
   for (size_t i = 0; i < accessor->sparse_count; i++) {
     size_t at = read_unsigned(indices, accessor->sparse_component, i);
     read_element(accessor, values + i * stride, out + at * accessor->width);
@@ -143,12 +137,8 @@ uint32_t *accessor_integers(const Document *doc, uint32_t index) {
   const Accessor *accessor = &doc->accessors[index];
   uint32_t *out = calloc(accessor->count, sizeof *out);
   if (!out) return NULL;
-  if (accessor->view != DOCUMENT_NONE) {
-    const uint8_t *data = view_data(doc, accessor->view, accessor->offset);
-    size_t stride = dense_stride(doc, accessor);
-    for (size_t i = 0; i < accessor->count; i++)
-      out[i] = read_unsigned(data + i * stride, accessor->component, 0);
-  }
+  for (size_t i = 0; accessor->data && i < accessor->count; i++)
+    out[i] = read_unsigned(accessor->data + i * accessor->stride, accessor->component, 0);
   for (size_t i = 0; i < accessor->sparse_count; i++) {
     const uint8_t *indices = view_data(doc, accessor->sparse_view, accessor->sparse_offset);
     const uint8_t *values = view_data(doc, accessor->values_view, accessor->values_offset);
@@ -165,15 +155,13 @@ const uint8_t *accessor_element(const Document *doc, const Accessor *a, size_t i
     uint32_t index = read_unsigned(view_data(doc, a->sparse_view, a->sparse_offset),
                                    a->sparse_component, middle);
     if (index == i)
-      return view_data(doc, a->values_view, a->values_offset) +
-             middle * column_size(a) * a->columns;
+      return view_data(doc, a->values_view, a->values_offset) + middle * accessor_packed_size(a);
     if (index < i)
       low = middle + 1;
     else
       high = middle;
   }
-  if (a->view == DOCUMENT_NONE) return NULL;
-  return view_data(doc, a->view, a->offset) + i * dense_stride(doc, a);
+  return a->data ? a->data + i * a->stride : NULL;
 }
 
 double accessor_component(const Accessor *a, const uint8_t *element, uint32_t c) {

@@ -22,6 +22,9 @@ size_t component_size(uint32_t component);
  */
 size_t accessor_element_size(const Accessor *accessor);
 
+/* Bytes from one element to the next where nothing lies between them. */
+size_t accessor_packed_size(const Accessor *accessor);
+
 /* Whether there are bytes behind an accessor: without, it is zeros, or its buffer is not here. */
 int accessor_has_data(const Document *doc, const Accessor *accessor);
 

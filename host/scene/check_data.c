@@ -7,6 +7,9 @@
 
 /* How far from 1 the length of a unit vector may be; quantised to 8 bits it is off by as much. */
 #define UNIT_TOLERANCE 0.01
+/* The same where data were compressed with loss; signs are off by as much, colours by less. */
+#define LOSSY_TOLERANCE 0.1
+#define LOSSY_COLOR 0.01
 
 static const json_t *accessor_json(const Document *doc, uint32_t i) {
   return json_array_get(json_object_get(doc->root, "accessors"), i);
@@ -36,7 +39,8 @@ static cdl_Status check_extent(Document *doc, uint32_t i, const double *least, c
 static cdl_Status check_values(Document *doc, uint32_t i) {
   const Accessor *a = &doc->accessors[i];
   const json_t *json = accessor_json(doc, i);
-  int bounded = json_object_get(json, "min") || json_object_get(json, "max");
+  /* Of data compressed with loss, min and max are those before. */
+  int bounded = !a->lossy && (json_object_get(json, "min") || json_object_get(json, "max"));
   double least[16], most[16];
   if (!accessor_has_data(doc, a)) return CDL_OK;
   if (!bounded && a->component != GL_FLOAT) return CDL_OK;
@@ -72,15 +76,16 @@ static double full_scale(uint32_t component) {
 
 static cdl_Status check_directions(Document *doc, const char *at, const Accessor *a, int tangents) {
   double scale = full_scale(a->component);
+  double tolerance = a->lossy ? LOSSY_TOLERANCE : UNIT_TOLERANCE;
   if (!accessor_has_data(doc, a)) return CDL_OK;
   for (size_t k = 0; k < a->count; k++) {
     const uint8_t *element = accessor_element(doc, a, k);
     double length = 0, sign = tangents ? accessor_component(a, element, 3) / scale : 1;
     for (uint32_t c = 0; c < 3; c++) length += pow(accessor_component(a, element, c) / scale, 2);
-    if (!(fabs(sqrt(length) - 1) <= UNIT_TOLERANCE))
+    if (!(fabs(sqrt(length) - 1) <= tolerance))
       return document_fail(doc, at, "ACCESSOR_VECTOR3_NON_UNIT", "vector %zu has length %g, not 1.",
                            k, sqrt(length));
-    if (sign != 1 && sign != -1)
+    if (fabs(fabs(sign) - 1) > (a->lossy ? LOSSY_TOLERANCE : 0))
       return document_fail(doc, at, "ACCESSOR_INVALID_SIGN",
                            "the handedness of tangent %zu is %g, neither 1 nor -1.", k, sign);
   }
@@ -88,11 +93,12 @@ static cdl_Status check_directions(Document *doc, const char *at, const Accessor
 }
 
 static cdl_Status check_colors(Document *doc, const char *at, const Accessor *a) {
+  double slack = a->lossy ? LOSSY_COLOR : 0;
   if (a->component != GL_FLOAT || !accessor_has_data(doc, a)) return CDL_OK;
   for (size_t k = 0; k < a->count; k++)
     for (uint32_t c = 0; c < a->width; c++) {
       double value = accessor_component(a, accessor_element(doc, a, k), c);
-      if (value < 0 || value > 1)
+      if (value < -slack || value > 1 + slack)
         return document_fail(doc, at, "ACCESSOR_NON_CLAMPED", "colour %zu has a component of %g.",
                              k, value);
     }

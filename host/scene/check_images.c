@@ -51,8 +51,7 @@ static cdl_Status read_embedded(Document *doc, uint32_t i, uint32_t view, Bytes 
     return document_fail(doc, AT("/images/%u/bufferView", i), "IMAGE_BUFFER_VIEW_WITH_BYTESTRIDE",
                          "a bufferView with an image cannot have a stride.");
   const BufferView *v = &doc->views[view];
-  if (!doc->buffers[v->buffer].data) return CDL_OK;
-  *bytes = (Bytes){doc->buffers[v->buffer].data + v->offset, v->length, NULL};
+  if (v->data) *bytes = (Bytes){v->data, v->length, NULL};
   return CDL_OK;
 }
 

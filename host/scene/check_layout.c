@@ -4,6 +4,12 @@
 
 #include "scene/accessor.h"
 #include "scene/check.h"
+#include "scene/compression.h"
+
+/* What compressed data may take in memory: so much in any case, and so many times their own size.
+ */
+#define DECODE_FLOOR ((size_t)256 << 20)
+#define DECODE_RATIO 64
 
 /* An accessor without bytes behind it is zeros; this many are enough for anyone. */
 #define MOST_ZEROS ((size_t)1 << 24)
@@ -22,6 +28,10 @@ static cdl_Status read_buffer(Document *doc, uint32_t i) {
   double length = json_get_number(buffer, "byteLength", 0);
   Bytes *bytes = &doc->buffers[i];
   char type[64] = "";
+  if (compression_is_fallback(buffer)) {
+    bytes->size = (size_t)length;
+    return CDL_OK;
+  }
   if (uri && uri_is_remote(uri)) {
     document_note(doc, NULL, at, "NON_RELATIVE_URI: nothing is fetched from the network.");
     bytes->size = (size_t)length;
@@ -71,7 +81,9 @@ static cdl_Status read_view(Document *doc, uint32_t i) {
                          "bytes %zu to %zu lie beyond buffer %u of %zu bytes.", view->offset,
                          view->offset + view->length, view->buffer, buffer->size);
   }
-  return check_stride(doc, i, view);
+  view->data = buffer->data ? buffer->data + view->offset : NULL;
+  cdl_Status status = check_stride(doc, i, view);
+  return status ? status : meshopt_view(doc, i, json, view);
 }
 
 cdl_Status check_buffers(Document *doc) {
@@ -84,6 +96,9 @@ cdl_Status check_buffers(Document *doc) {
   doc->view_count = views;
   cdl_Status status = CDL_OK;
   for (uint32_t i = 0; i < buffers && !status; i++) status = read_buffer(doc, i);
+  doc->decode_left = DECODE_FLOOR;
+  for (uint32_t i = 0; i < buffers; i++)
+    if (doc->buffers[i].data) doc->decode_left += DECODE_RATIO * doc->buffers[i].size;
   for (uint32_t i = 0; i < views && !status; i++) status = read_view(doc, i);
   return status;
 }
@@ -99,10 +114,10 @@ static cdl_Status check_range(Document *doc, const char *at, uint32_t view, size
                        count, size, stride, offset, view, length);
 }
 
-static cdl_Status check_dense(Document *doc, uint32_t i, const Accessor *a) {
+static cdl_Status check_dense(Document *doc, uint32_t i, Accessor *a) {
   const BufferView *view = &doc->views[a->view];
   size_t size = accessor_element_size(a), component = component_size(a->component);
-  size_t packed = a->columns > 1 ? (size + 3) & ~(size_t)3 : size;
+  size_t packed = accessor_packed_size(a);
   if (view->stride && view->stride < packed)
     return document_fail(doc, AT("/accessors/%u", i), "ACCESSOR_SMALL_BYTESTRIDE",
                          "the stride %u is smaller than an element of %zu bytes.", view->stride,
@@ -115,13 +130,14 @@ static cdl_Status check_dense(Document *doc, uint32_t i, const Accessor *a) {
     return document_fail(doc, AT("/accessors/%u", i), "ACCESSOR_TOTAL_OFFSET_ALIGNMENT",
                          "its first byte is not at a multiple of the component's %zu bytes.",
                          component);
-  return check_range(doc, AT("/accessors/%u", i), a->view, a->offset, a->count,
-                     view->stride ? view->stride : packed, size);
+  a->stride = view->stride ? view->stride : packed;
+  a->data = view->data ? view->data + a->offset : NULL;
+  a->lossy = view->lossy;
+  return check_range(doc, AT("/accessors/%u", i), a->view, a->offset, a->count, a->stride, size);
 }
 
 static cdl_Status check_sparse_order(Document *doc, uint32_t i, const Accessor *a) {
-  const BufferView *view = &doc->views[a->sparse_view];
-  const uint8_t *data = doc->buffers[view->buffer].data + view->offset + a->sparse_offset;
+  const uint8_t *data = doc->views[a->sparse_view].data + a->sparse_offset;
   const char *at = AT("/accessors/%u/sparse/indices", i);
   for (size_t k = 0; k < a->sparse_count; k++) {
     uint32_t index = read_unsigned(data, a->sparse_component, k);
@@ -150,7 +166,7 @@ static cdl_Status read_sparse(Document *doc, uint32_t i, const json_t *sparse, A
   a->values_view = json_get_index(values, "bufferView");
   a->values_offset = (size_t)json_get_number(values, "byteOffset", 0);
   size_t size = component_size(a->sparse_component), element = accessor_element_size(a);
-  size_t packed = a->columns > 1 ? (element + 3) & ~(size_t)3 : element;
+  size_t packed = accessor_packed_size(a);
   cdl_Status status = check_range(doc, AT("/accessors/%u/sparse/indices", i), a->sparse_view,
                                   a->sparse_offset, a->sparse_count, size, size);
   if (!status)
@@ -190,6 +206,7 @@ static cdl_Status read_accessor(Document *doc, uint32_t i) {
   a->component = json_get_index(json, "componentType");
   a->count = (size_t)json_get_number(json, "count", 0);
   a->offset = (size_t)json_get_number(json, "byteOffset", 0);
+  a->source = DOCUMENT_NONE;
   a->normalized = json_is_true(json_object_get(json, "normalized"));
   const char *at = AT("/accessors/%u", i);
   if (a->normalized && a->component >= GL_UNSIGNED_INT)
@@ -198,13 +215,20 @@ static cdl_Status read_accessor(Document *doc, uint32_t i) {
   if (a->view == DOCUMENT_NONE && json_object_get(json, "byteOffset"))
     return document_fail(doc, AT("/accessors/%u/byteOffset", i), "UNSATISFIED_DEPENDENCY",
                          "it needs a bufferView.");
-  if (a->view == DOCUMENT_NONE && a->count > MOST_ZEROS)
-    return document_fail(doc, at, "ACCESSOR_TOO_LONG",
-                         "%zu elements without a bufferView are too many.", a->count);
   cdl_Status status = check_bounds(doc, i, json, a);
   if (!status && a->view != DOCUMENT_NONE) status = check_dense(doc, i, a);
   if (!status && sparse) status = read_sparse(doc, i, sparse, a);
   return status;
+}
+
+static cdl_Status check_zeros(Document *doc) {
+  for (uint32_t i = 0; i < doc->accessor_count; i++) {
+    const Accessor *a = &doc->accessors[i];
+    if (a->view == DOCUMENT_NONE && !a->data && a->count > MOST_ZEROS)
+      return document_fail(doc, AT("/accessors/%u", i), "ACCESSOR_TOO_LONG",
+                           "%zu elements without a bufferView are too many.", a->count);
+  }
+  return CDL_OK;
 }
 
 cdl_Status check_accessors(Document *doc) {
@@ -214,5 +238,6 @@ cdl_Status check_accessors(Document *doc) {
   doc->accessor_count = count;
   cdl_Status status = CDL_OK;
   for (uint32_t i = 0; i < count && !status; i++) status = read_accessor(doc, i);
-  return status;
+  if (!status) status = draco_primitives(doc);
+  return status ? status : check_zeros(doc);
 }

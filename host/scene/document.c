@@ -37,6 +37,16 @@ void document_note(const Document *doc, const char *key, const char *pointer, co
   log_note(doc->log, "%s: %s: %s", doc->path, *pointer ? pointer : "/", words);
 }
 
+cdl_Status document_charge(Document *doc, const char *pointer, size_t bytes) {
+  if (bytes > doc->decode_left)
+    return document_fail(doc, pointer, "DECOMPRESSED_DATA_TOO_LARGE",
+                         "%zu bytes more than the %zu that the compressed data of this file may "
+                         "still take; split it, or export it without compression.",
+                         bytes - doc->decode_left, doc->decode_left);
+  doc->decode_left -= bytes;
+  return CDL_OK;
+}
+
 cdl_Status document_out_of_memory(const Document *doc) {
   return log_fail(doc->log, CDL_BAD_INPUT, "%s: there is not enough memory for this scene.",
                   doc->path);
@@ -172,6 +182,8 @@ static void free_bytes(Bytes *list, uint32_t count) {
 void document_close(Document *doc) {
   free_bytes(doc->buffers, doc->buffer_count);
   free_bytes(doc->images, doc->image_count);
+  for (uint32_t i = 0; i < doc->view_count; i++) free(doc->views[i].owned);
+  for (uint32_t i = 0; i < doc->accessor_count; i++) free(doc->accessors[i].owned);
   free(doc->views);
   free(doc->accessors);
   free(doc->file.owned);

@@ -30,7 +30,10 @@ typedef struct Bytes {
 typedef struct BufferView {
   uint32_t buffer, stride; /* stride in bytes; 0: none given */
   size_t offset, length;
-  uint32_t target; /* 0: none given */
+  uint32_t target;     /* 0: none given */
+  const uint8_t *data; /* its first byte; NULL: its buffer is not here */
+  uint8_t *owned;      /* what was decompressed, to free */
+  uint32_t lossy;      /* decompressed to less than full precision */
 } BufferView;
 
 /* Where an accessor's elements lie; ranges are proven by check_layout(). */
@@ -39,6 +42,11 @@ typedef struct Accessor {
   uint32_t component, width, columns; /* GL component type; components; matrix columns (1: none) */
   uint32_t normalized;
   size_t offset, count;
+  const uint8_t *data; /* its first element, sparse values aside; NULL: zeros, or not here */
+  size_t stride;       /* bytes from one element to the next */
+  uint8_t *owned;      /* what was decompressed, to free */
+  uint32_t source;     /* the buffer view that this was decompressed from, or DOCUMENT_NONE */
+  uint32_t lossy;      /* as of BufferView */
   size_t sparse_count; /* 0: not sparse */
   uint32_t sparse_view, sparse_component, values_view;
   size_t sparse_offset, values_offset;
@@ -56,6 +64,7 @@ typedef struct Document {
   BufferView *views;
   Accessor *accessors;
   uint32_t buffer_count, image_count, view_count, accessor_count;
+  size_t decode_left;     /* bytes that compressed data may still grow to; see document_charge() */
   struct sha256_ctx hash; /* over every file read, in order, each with its length before it */
 } Document;
 
@@ -74,6 +83,10 @@ void document_note(const Document *doc, const char *key, const char *pointer, co
                    ...) __attribute__((format(printf, 4, 5)));
 
 cdl_Status document_out_of_memory(const Document *doc);
+
+/* Takes `bytes` off what compressed data of this document may take in memory; fails, with `pointer`
+ * in the message, when not so much is left. What small files can blow up to is bounded by it. */
+cdl_Status document_charge(Document *doc, const char *pointer, size_t bytes);
 
 /* Resolves a URI (data: or a relative path) to bytes of its own. `pointer` says where the URI
  * stands. *media_type, unless NULL, gets a data URI's type, or "". Files outside the scene's

@@ -56,8 +56,8 @@ typedef struct ExtensionPlace {
 
 extern const Schema schema_root, schema_scene, schema_node, schema_mesh, schema_primitive,
     schema_material, schema_pbr, schema_texture_info, schema_normal_info, schema_occlusion_info,
-    schema_texture, schema_image, schema_camera, schema_animation_target, schema_buffer_view,
-    schema_sampler, schema_light;
+    schema_texture, schema_image, schema_camera, schema_animation_target, schema_buffer,
+    schema_buffer_view, schema_sampler, schema_light;
 
 /* Ended by a NULL name. */
 extern const ExtensionPlace schema_extensions[];

@@ -23,7 +23,7 @@ static SCHEMA(schema_asset, "asset", asset);
 
 static const Member buffer[] = {NAME, STRING("uri", 0), INTEGER("byteLength", REQUIRED, 1, MOST),
                                 END};
-static SCHEMA(schema_buffer, "buffer", buffer);
+SCHEMA(schema_buffer, "buffer", buffer);
 
 static const Member buffer_view[] = {NAME,
                                      INDEX("buffer", REQUIRED, "buffers"),

@@ -1,5 +1,6 @@
 /* schema_extensions.c: the members of the extensions that are read, and where each may stand. An
  * extension that is not listed here is neither checked nor shown. */
+#include "scene/schema_compression.h"
 #include "scene/schema_members.h"
 
 static const char *const light_types[] = {"point", "spot", "directional", NULL};
@@ -192,8 +193,11 @@ const ExtensionPlace schema_extensions[] = {
     {"CDL_medium", &schema_material, &schema_cdl_medium},
     {"CDL_medium", &schema_scene, &schema_cdl_medium},
     {"EXT_mesh_gpu_instancing", &schema_node, &schema_instancing},
+    {"EXT_meshopt_compression", &schema_buffer, &schema_meshopt_buffer},
+    {"EXT_meshopt_compression", &schema_buffer_view, &schema_meshopt_view_ext},
     {"EXT_texture_webp", &schema_texture, &schema_source},
     {"KHR_animation_pointer", &schema_animation_target, &schema_pointer},
+    {"KHR_draco_mesh_compression", &schema_primitive, &schema_draco},
     {"KHR_lights_punctual", &schema_node, &schema_node_light},
     {"KHR_lights_punctual", &schema_root, &schema_lights},
     {"KHR_materials_anisotropy", &schema_material, &schema_anisotropy},
@@ -210,6 +214,8 @@ const ExtensionPlace schema_extensions[] = {
     {"KHR_materials_variants", &schema_primitive, &schema_mappings},
     {"KHR_materials_variants", &schema_root, &schema_variants},
     {"KHR_materials_volume", &schema_material, &schema_volume},
+    {"KHR_meshopt_compression", &schema_buffer, &schema_meshopt_buffer},
+    {"KHR_meshopt_compression", &schema_buffer_view, &schema_meshopt_view_khr},
     {"KHR_node_visibility", &schema_node, &schema_visibility},
     {"KHR_texture_basisu", &schema_texture, &schema_source},
     {"KHR_texture_transform", &schema_normal_info, &schema_transform},
