@@ -10,8 +10,16 @@
 #define CDL_PARAM(model, name, words)                                                              \
   CDL_##model##_##name, CDL_##model##_##name##_END = CDL_##model##_##name + (words)-1
 
-/* Index of refraction, inside over outside, > 0. */
-enum { CDL_PARAM(DIELECTRIC, IOR, 1), CDL_DIELECTRIC_PARAMS };
+/* Index of refraction, inside over outside, > 0, at 587.6 nm; Abbe's number, 0: no dispersion. */
+enum { CDL_PARAM(DIELECTRIC, IOR, 1), CDL_PARAM(DIELECTRIC, ABBE, 1), CDL_DIELECTRIC_PARAMS };
+
+/* Microfacet alpha along tangent and bitangent; the others as above. */
+enum {
+  CDL_PARAM(ROUGH_DIELECTRIC, ALPHA, 2),
+  CDL_PARAM(ROUGH_DIELECTRIC, IOR, 1),
+  CDL_PARAM(ROUGH_DIELECTRIC, ABBE, 1),
+  CDL_ROUGH_DIELECTRIC_PARAMS
+};
 
 /* Microfacet alpha along tangent and bitangent; complex index eta + i k, per channel. */
 enum {

@@ -7,21 +7,31 @@
 #define CDL_BSDF_DIELECTRIC_H
 
 #include "bsdf/bsdf.h"
+#include "bsdf/dispersion.h"
 #include "bsdf/fresnel.h"
 
 typedef struct DielectricParams {
   vec3 transmittance;
-  float ior; /* inside over outside */
-  int front; /* 1: wo is outside */
+  vec3 channel; /* weight of each colour channel, 1 unless dispersive */
+  float eta;    /* index beyond the surface over that on the side of wo */
+  int thin;     /* 1: both sides of a sheet at once; light leaves it in the direction it came in */
 } DielectricParams;
+
+CDL_INLINE DielectricParams dielectric_make(BsdfPoint point, float ior, float abbe) {
+  Dispersion dispersion = dispersion_choose(point, ior, abbe);
+  float inverse = 1.0f / dispersion.ior;
+  DielectricParams p;
+  p.transmittance = point.base;
+  p.thin = (point.flags & CDL_MATERIAL_THIN) != 0u;
+  p.channel = dispersion.weight;
+  p.eta = point.front || p.thin ? dispersion.ior : inverse;
+  return p;
+}
 
 CDL_INLINE DielectricParams dielectric_params(BsdfPoint point, CDL_GLOBAL const uint *params,
                                               size_t stride, size_t i) {
-  DielectricParams p;
-  p.transmittance = point.base;
-  p.ior = param_float(params, CDL_DIELECTRIC_IOR, stride, i);
-  p.front = point.front;
-  return p;
+  return dielectric_make(point, param_float(params, CDL_DIELECTRIC_IOR, stride, i),
+                         param_float(params, CDL_DIELECTRIC_ABBE, stride, i));
 }
 
 CDL_INLINE BsdfValue dielectric_evaluate(DielectricParams p, vec3 wo, vec3 wi) {
@@ -31,21 +41,26 @@ CDL_INLINE BsdfValue dielectric_evaluate(DielectricParams p, vec3 wo, vec3 wi) {
   return bsdf_black();
 }
 
-/* wo is on +Z; p.front says whether that is outside. w picks the lobe. */
+/* What a sheet reflects whose two sides reflect r each, all orders of interreflection summed:
+ * r + t^2 r / (1 - r^2) with t = 1 - r. */
+CDL_INLINE float dielectric_sheet(float r) { return 2.0f * r / (1.0f + r); }
+
+/* wo is on +Z. w picks the lobe. */
 CDL_INLINE BsdfSample dielectric_sample(DielectricParams p, vec3 wo, float u, float v, float w) {
   (void)u;
   (void)v;
-  float inverse = 1.0f / p.ior;
-  float eta = p.front ? p.ior : inverse;
   float cos_o = math_saturate(wo.z);
-  DielectricFresnel f = fresnel_dielectric(cos_o, eta);
-  int transmitted = w >= f.reflectance;
-  vec3 refracted = fresnel_refract(wo, v3(0.0f, 0.0f, 1.0f), cos_o, f.cos_t, eta);
-  float scale = 1.0f / (eta * eta);
-  vec3 wi = v3_select(transmitted, refracted, bsdf_mirror(wo));
+  DielectricFresnel f = fresnel_dielectric(cos_o, p.eta);
+  float reflectance = p.thin ? dielectric_sheet(f.reflectance) : f.reflectance;
+  int transmitted = w >= reflectance;
+  vec3 refracted = fresnel_refract(wo, v3(0.0f, 0.0f, 1.0f), cos_o, f.cos_t, p.eta);
+  vec3 through = v3_select(p.thin, v3_neg(wo), refracted);
+  float beyond = p.thin ? 1.0f : p.eta;
+  float scale = 1.0f / (beyond * beyond);
+  vec3 wi = v3_select(transmitted, through, bsdf_mirror(wo));
   vec3 weight = v3_select(transmitted, v3_scale(p.transmittance, scale), v3_all(1.0f));
-  BsdfSample sample = bsdf_delta(wi, weight);
-  sample.eta = transmitted ? eta : 1.0f;
+  BsdfSample sample = bsdf_delta(wi, v3_mul(p.channel, weight));
+  sample.eta = transmitted ? beyond : 1.0f;
   sample.transmitted = transmitted;
   return sample;
 }
