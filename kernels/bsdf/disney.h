@@ -34,15 +34,15 @@ typedef struct DisneyParams {
   vec3 sheen;    /* times its share */
   float metallic;
   float roughness;
-  float opaque, glass;   /* shares: (1-metallic) (1-specTrans), (1-metallic) specTrans */
-  float eta;             /* beyond over before, at the side of wo */
-  float flat;            /* share of Hanrahan and Krueger in the diffuse part */
-  float diffuse_through; /* share of the diffuse part that goes through, [0,1] */
-  float coat;            /* clearcoat / 4 */
-  float coat_alpha;      /* of GTR1 */
-  float coat_log;        /* log(1 / alpha^2) */
-  float alpha_x, alpha_y;         /* of reflection */
-  float through_x, through_y;     /* and of what passes */
+  float opaque, glass;        /* shares: (1-metallic) (1-specTrans), (1-metallic) specTrans */
+  float eta;                  /* beyond over before, at the side of wo */
+  float flat;                 /* share of Hanrahan and Krueger in the diffuse part */
+  float diffuse_through;      /* share of the diffuse part that goes through, [0,1] */
+  float coat;                 /* clearcoat / 4 */
+  float coat_alpha;           /* of GTR1 */
+  float coat_log;             /* log(1 / alpha^2) */
+  float alpha_x, alpha_y;     /* of reflection */
+  float through_x, through_y; /* and of what passes */
   int thin;
 } DisneyParams;
 
@@ -99,7 +99,8 @@ CDL_INLINE DisneyParams disney_params(BsdfPoint point, CDL_GLOBAL const uint *pa
   float diffuse_through = 0.5f * param_float(params, CDL_DISNEY_DIFF_TRANS, stride, i);
   p.diffuse_through = p.thin ? diffuse_through : 0.0f;
   p.coat = 0.25f * param_float(params, CDL_DISNEY_CLEARCOAT, stride, i);
-  p.coat_alpha = math_lerp(0.1f, 0.001f, param_float(params, CDL_DISNEY_CLEARCOAT_GLOSS, stride, i));
+  p.coat_alpha =
+      math_lerp(0.1f, 0.001f, param_float(params, CDL_DISNEY_CLEARCOAT_GLOSS, stride, i));
   p.coat_log = -2.0f * math_log(p.coat_alpha);
   float ior = param_float(params, CDL_DISNEY_IOR, stride, i);
   float apart = math_copysign(math_max(math_abs(ior - 1.0f), DISNEY_IOR_STEP), ior - 1.0f);
@@ -140,7 +141,8 @@ CDL_INLINE float disney_coat_masking(float c) {
 }
 
 /* Everything that depends on the half vector, for reflection and transmission alike: h is halfway
- * between wo and wi, wi mirrored into the upper hemisphere where thin, or Walter's -(wo + eta wi). */
+ * between wo and wi, wi mirrored into the upper hemisphere where thin, or Walter's -(wo + eta wi).
+ */
 CDL_INLINE DisneyPair disney_pair(DisneyParams p, vec3 wo, vec3 wi) {
   DisneyPair q;
   int through = wi.z < 0.0f;

@@ -74,7 +74,9 @@ typedef struct OrenNayarLobe {
 CDL_INLINE OrenNayarLobe oren_nayar_lobe(float r, vec3 wo) {
   OrenNayarLobe l;
   float mu = math_saturate(wo.z);
-  l.a = fma(r, fma(fma(0.335918f, mu, -0.276266f), r, fma(fma(0.111709f, mu, -0.518982f), mu, 0.303392f)), 1.0f);
+  l.a = fma(
+      r, fma(fma(0.335918f, mu, -0.276266f), r, fma(fma(0.111709f, mu, -0.518982f), mu, 0.303392f)),
+      1.0f);
   float b = r * fma(fma(-0.150105f, mu, 0.150815f), r, fma(1.15859f, mu, -1.16407f));
   l.b = b / fma(mu * mu, mu, -1.43545f);
   l.c = fma(r, fma(fma(0.261777f, mu, -0.506373f), mu, 0.20013f), 1.0f);
