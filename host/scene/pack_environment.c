@@ -108,7 +108,6 @@ static uint32_t cells_across(int texels, uint32_t most) {
 
 static void set_params(const cdl_SceneEnvironment *from, const cdl_Image *image,
                        cdl_EnvironmentParams *env) {
-  env->present = 1;
   env->width = image ? (uint32_t)image->width : 1;
   env->height = image ? (uint32_t)image->height : 1;
   env->columns = image ? cells_across(image->width, MAX_COLUMNS) : 1;
@@ -126,7 +125,6 @@ cdl_Status pack_environment(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack
       from->present && from->image != CDL_NONE ? scene->images[from->image] : NULL;
   cdl_EnvironmentParams *env = &pack->environment_params;
   set_params(from, image, env);
-  env->present = from->present != 0;
   pack->environment_count = (size_t)env->width * env->height;
   pack->cell_count = (size_t)env->columns * env->rows;
   pack->environment =

@@ -19,14 +19,13 @@ typedef struct cdl_CameraParams {
 CDL_ABI_SIZE(cdl_CameraParams, 80);
 
 typedef struct cdl_EnvironmentParams {
-  uint present;       /* 0: black */
   uint width, height; /* texels; 1 x 1 for a constant one */
   uint columns,
       rows;       /* cells of the importance table; each divides the sphere like the texels do */
   float scale[3]; /* strength */
   float rotation_cos, rotation_sin; /* about +Y, counter-clockwise seen from above */
   float select_pdf;                 /* probability that light sampling chooses it */
-  uint pad;
+  uint pad[2];
 } cdl_EnvironmentParams;
 CDL_ABI_SIZE(cdl_EnvironmentParams, 48);
 
@@ -44,7 +43,7 @@ typedef struct cdl_Params {
   uint scene_medium;     /* index into the media */
   float scene_center[3]; /* sphere around the world's bounds */
   float scene_radius;
-  uint pass_limit; /* surfaces that a path may cross without scattering */
+  uint pass_limit; /* surfaces that a path may go straight through, all in all */
   uint pad[3];
 } cdl_Params;
 CDL_ABI_SIZE(cdl_Params, 208);

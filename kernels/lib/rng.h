@@ -110,11 +110,4 @@ CDL_INLINE void rng_2d(uint key, uint sample, uint pair, float *u, float *v) {
 /* One of `count` alike, from 32 random bits: 24 would favour some where there are many. */
 CDL_INLINE uint rng_pick(uint bits, uint count) { return mul_hi(bits, count); }
 
-/* One stratified number for one sample of a pixel, independent of all pairs of rng_2d. */
-CDL_INLINE float rng_1d(uint key, uint sample, uint dimension) {
-  uint seed = rng_dimension_seed(key, 2u * dimension + 1u);
-  uint index = rng_shuffle_index(sample, seed);
-  return rng_to_unit(rng_reverse_bits(rng_scramble_reversed(index, rng_hash(seed + 1u))));
-}
-
 #endif

@@ -43,21 +43,14 @@ CDL_INLINE vec3 sample_cosine_hemisphere(float u, float v) {
   return v3(radius * cosine, radius * sine, z);
 }
 
-/* Uniform over the directions within a cone about +Z whose half-angle t is given as
- * one_minus_cos = 1 - cos t in (0, 2], which keeps narrow cones accurate; 2 gives the sphere. */
-CDL_INLINE vec3 sample_cone(float u, float v, float one_minus_cos) {
-  float h = u * one_minus_cos;
+/* Uniform over all directions; density CDL_INV_4PI by solid angle. */
+CDL_INLINE vec3 sample_sphere(float u, float v) {
+  float h = 2.0f * u;
   float radius = math_safe_sqrt(h * (2.0f - h));
   float cosine, sine;
   math_sincos_2pi(v, &sine, &cosine);
   return v3(radius * cosine, radius * sine, 1.0f - h);
 }
-
-/* Density inside the cone, by solid angle. */
-CDL_INLINE float sample_cone_pdf(float one_minus_cos) { return CDL_INV_2PI / one_minus_cos; }
-
-/* Uniform over all directions; density CDL_INV_4PI by solid angle. */
-CDL_INLINE vec3 sample_sphere(float u, float v) { return sample_cone(u, v, 2.0f); }
 
 /* Uniform on a triangle, as the barycentric weights of its first two corners; the third's is the
  * rest to 1 and not negative. Density 1 / area. (Heitz 2019, "A Low-Distortion Map Between Triangle
@@ -70,20 +63,18 @@ CDL_INLINE void sample_triangle(float u, float v, float *b0, float *b1) {
   *b1 = upper ? rest : half_small;
 }
 
-/* Multiple importance sampling (Veach 1997, section 9.2): the weight of a sample drawn with density
- * `own` that the other technique would have drawn with density `other`, both >= 0. Infinite
- * densities are limits; two equal ones weigh 1/2, and own = 0 weighs 0. */
-CDL_INLINE float mis_ratio(float own, float other) {
-  return own == other ? 1.0f : other / (own > 0.0f ? own : 1.0f);
-}
-
-CDL_INLINE float mis_balance(float own, float other) {
-  return own > 0.0f ? 1.0f / (1.0f + mis_ratio(own, other)) : 0.0f;
-}
-
+/* Multiple importance sampling by the power heuristic (Veach 1997, section 9.2): the weight of a
+ * sample drawn with density `own` that the other technique would have drawn with density `other`,
+ * both >= 0. Infinite densities are limits; two equal ones weigh 1/2, and own = 0 weighs 0. */
 CDL_INLINE float mis_power(float own, float other) {
-  float ratio = mis_ratio(own, other);
+  float ratio = own == other ? 1.0f : other / (own > 0.0f ? own : 1.0f);
   return own > 0.0f ? 1.0f / fma(ratio, ratio, 1.0f) : 0.0f;
+}
+
+/* The same of one technique alone, whose density may be 0 for what the other one cannot do: camera
+ * rays and delta lobes (no light is sampled for them), delta lights (no ray meets them). */
+CDL_INLINE float mis_power_or_alone(float own, float other) {
+  return own > 0.0f ? mis_power(own, other) : 1.0f;
 }
 
 /* One coordinate of offset_ray. The bits of a float are an ordered integer, so adding to them moves

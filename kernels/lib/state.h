@@ -54,4 +54,7 @@ CDL_INLINE uint counts_scattered(uint counts) { return counts + 0x10001u; }
 
 CDL_INLINE uint counts_passed(uint counts) { return counts + 0x10000u; }
 
+/* Surfaces that the path went straight through: vertices at which it did not scatter. */
+CDL_INLINE uint counts_passes(uint counts) { return counts_vertex(counts) - counts_depth(counts); }
+
 #endif

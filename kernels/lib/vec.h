@@ -66,8 +66,6 @@ CDL_INLINE vec3 v3_normalize(vec3 a) {
 
 CDL_INLINE float v3_max(vec3 a) { return fmax(a.x, fmax(a.y, a.z)); }
 
-CDL_INLINE float v3_mean(vec3 a) { return (a.x + a.y + a.z) * (1.0f / 3.0f); }
-
 /* condition ? a : b, by component, so that it stays a select */
 CDL_INLINE vec3 v3_select(int condition, vec3 a, vec3 b) {
   return v3(condition ? a.x : b.x, condition ? a.y : b.y, condition ? a.z : b.z);

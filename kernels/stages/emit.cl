@@ -43,7 +43,7 @@ __kernel void emit(CDL_CONSTANT cdl_Wave *restrict wave,
     float light_pdf = light_triangle_pdf(lights + light, distance, v3_dot(normal, direction));
     light_pdf = first_light != CDL_NONE ? light_pdf : 0.0f;
     float pdf = state_float(path, CDL_PATH_PDF, stride, i);
-    float weight = pdf > 0.0f ? mis_power(pdf, light_pdf) : 1.0f;
+    float weight = mis_power_or_alone(pdf, light_pdf);
 
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
     vec3 add = v3_scale(v3_mul(throughput, radiance), lit ? weight : 0.0f);

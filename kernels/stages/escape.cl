@@ -16,7 +16,7 @@ __kernel void escape(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_
     uint slot = state_uint(path, CDL_PATH_SLOT, stride, i);
     vec3 radiance = environment_radiance(&params->environment, environment, direction);
     float light_pdf = environment_pdf(&params->environment, environment_cells, direction);
-    float weight = pdf > 0.0f ? mis_power(pdf, light_pdf) : 1.0f;
+    float weight = mis_power_or_alone(pdf, light_pdf);
     state_add_radiance(slots, wave->slots, slot, v3_scale(v3_mul(throughput, radiance), weight));
   }
 }

@@ -21,7 +21,7 @@ __kernel void pass(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wa
     MediaStack crossed =
         media_crossed(before, materials[material].medium, (vertex & CDL_VERTEX_FRONT) != 0u);
     int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
-    int alive = v3_max(throughput) > 0.0f && (counts_vertex(counts) < params->pass_limit);
+    int alive = (v3_max(throughput) > 0.0f) & (counts_passes(counts) < params->pass_limit);
 
     state_set_float(path, CDL_PATH_PASSED, stride, i, passed);
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts);

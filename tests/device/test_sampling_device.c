@@ -48,7 +48,6 @@ COMPARE_SHARED(
     })
 
 #define CASES(X)                                                                                   \
-  X(rng_1d, INFINITY, rng_1d(as_uint(a), as_uint(b), 3u))                                          \
   X(rng_u, INFINITY, pick_pair(as_uint(a), as_uint(b), 0))                                         \
   X(rng_v, INFINITY, pick_pair(as_uint(a), as_uint(b), 1))                                         \
   X(pixel_key, INFINITY, rng_to_unit(rng_pixel_key(as_uint(a), as_uint(b), 5u)))                   \
@@ -58,10 +57,8 @@ COMPARE_SHARED(
   X(cosine_z, 0.99999994f, sample_cosine_hemisphere(math_abs(a), math_abs(b)).z)                   \
   X(sphere_x, 0.99999994f, sample_sphere(math_abs(a), math_abs(b)).x)                              \
   X(sphere_z, 0.99999994f, sample_sphere(math_abs(a), math_abs(b)).z)                              \
-  X(cone_y, 0.99999994f, sample_cone(math_abs(a), math_abs(b), 0.01f).y)                           \
   X(triangle, 0.99999994f, pick_triangle(math_abs(a), math_abs(b)))                                \
   X(mis_power, INFINITY, mis_power(math_abs(a), math_abs(b)))                                      \
-  X(mis_balance, INFINITY, mis_balance(math_abs(a), math_abs(b)))                                  \
   X(offset, 1e6f, offset_coordinate(a, math_clamp(b, -1.0f, 1.0f)))                                \
   X(frame_x, INFINITY, pick_frame(a, b).x.x)                                                       \
   X(frame_y, INFINITY, pick_frame(a, b).y.z)                                                       \

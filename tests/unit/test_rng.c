@@ -77,16 +77,6 @@ static void aligned_blocks_are_nets(void **state) {
   }
 }
 
-static void blocks_of_one_dimension_are_stratified(void **state) {
-  (void)state;
-  for (uint t = 0; t < 1000u; t++) {
-    unsigned char cells[256] = {0};
-    for (uint i = 0; i < 256u; i++)
-      cells[(uint)(rng_1d(rng_pixel_key(t, 3u, 9u), 256u * t + i, t % 11u) * 256.0f)]++;
-    for (int i = 0; i < 256; i++) assert_int_equal(cells[i], 1);
-  }
-}
-
 static void values_stay_below_one(void **state) {
   (void)state;
   assert_true(rng_to_unit(0xffffffffu) < 1.0f && rng_to_unit(0u) == 0.0f);
@@ -150,13 +140,6 @@ static void next_seed(uint p, float *a, float *b) {
   rng_2d(rng_pixel_key(p & 1023u, p >> 10, 5u), 2u, 1u, &unused, b);
 }
 
-static void single_and_pair(uint p, float *a, float *b) {
-  float unused;
-  uint key = rng_pixel_key(p & 1023u, p >> 10, 6u);
-  *a = rng_1d(key, 7u, 0u);
-  rng_2d(key, 7u, 0u, b, &unused);
-}
-
 static void one_pixel_in_blocks(uint p, float *a, float *b) {
   /* every 4096th sample: blocks of that size are scrambled apart */
   rng_2d(rng_pixel_key(11u, 12u, 7u), p * 4096u + (rng_hash(p) & 4095u), 0u, a, b);
@@ -173,7 +156,6 @@ static const struct {
     {"right neighbour", right_neighbour},
     {"lower neighbour", lower_neighbour},
     {"next seed", next_seed},
-    {"single and pair", single_and_pair},
     {"one pixel in blocks", one_pixel_in_blocks},
 };
 
@@ -256,7 +238,6 @@ int main(void) {
       cmocka_unit_test(sobol_matches_the_recurrence),
       cmocka_unit_test(scramble_is_nested),
       cmocka_unit_test(aligned_blocks_are_nets),
-      cmocka_unit_test(blocks_of_one_dimension_are_stratified),
       cmocka_unit_test(values_stay_below_one),
       cmocka_unit_test(pairs_of_numbers_are_uniform_and_uncorrelated),
       cmocka_unit_test(small_nets_take_every_arrangement),
