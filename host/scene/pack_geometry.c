@@ -29,20 +29,9 @@ static int material_passable(const cdl_Material *m) {
          (m->flags & (CDL_MATERIAL_MASK | CDL_MATERIAL_BLEND)) != 0;
 }
 
-static int is_mirrored(const float m[12]) {
-  double a = m[0], b = m[1], c = m[2], d = m[4], e = m[5], f = m[6], g = m[8], h = m[9], i = m[10];
-  return a * (e * i - f * h) - b * (d * i - f * g) + c * (d * h - e * g) < 0.0;
-}
-
 static void normalize(float v[3]) {
   double l = sqrt((double)v[0] * v[0] + (double)v[1] * v[1] + (double)v[2] * v[2]);
   for (int i = 0; i < 3; i++) v[i] = l > 0.0 ? (float)(v[i] / l) : 0.0f;
-}
-
-static void bake_point(const float m[12], const float *p, float *out) {
-  for (int r = 0; r < 3; r++)
-    out[r] = (float)((double)m[4 * r] * p[0] + (double)m[4 * r + 1] * p[1] +
-                     (double)m[4 * r + 2] * p[2] + m[4 * r + 3]);
 }
 
 static void bake_direction(const float m[12], const float *d, float *out) {
@@ -55,7 +44,7 @@ static void bake_direction(const float m[12], const float *d, float *out) {
 /* Normals turn by the cofactors of the matrix, which are its inverse transpose times its
  * determinant; the sign of that is taken out again. */
 static void bake_normal(const float m[12], const float *n, float *out) {
-  double sign = is_mirrored(m) ? -1.0 : 1.0;
+  double sign = pack_mirrors(m) ? -1.0 : 1.0;
   for (int r = 0; r < 3; r++) {
     const float *a = m + 4 * ((r + 1) % 3), *b = m + 4 * ((r + 2) % 3);
     double x = (double)a[1] * b[2] - (double)a[2] * b[1];
@@ -77,9 +66,9 @@ static uint32_t append(Geometry *g, const cdl_SceneMesh *mesh, const float *from
 
 static void bake_attributes(const cdl_SceneMesh *mesh, const float m[12], const cdl_Shape *shape,
                             float *attributes) {
-  float mirror = is_mirrored(m) ? -1.0f : 1.0f;
+  float mirror = pack_mirrors(m) ? -1.0f : 1.0f;
   for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-    bake_point(m, mesh->positions + 3 * (size_t)i, attributes + shape->positions + 3 * (size_t)i);
+    pack_point(m, mesh->positions + 3 * (size_t)i, attributes + shape->positions + 3 * (size_t)i);
     if (mesh->normals)
       bake_normal(m, mesh->normals + 3 * (size_t)i, attributes + shape->normals + 3 * (size_t)i);
     if (!mesh->tangents) continue;
@@ -120,7 +109,7 @@ static cdl_Status add_shape(Geometry *g, const cdl_SceneMesh *mesh, const float 
   shape->colors = append(g, mesh, mesh->colors, 4);
   pack->features.vertex_colors |= mesh->colors != NULL;
   if (to_world) bake_attributes(mesh, to_world, shape, pack->attributes);
-  if (to_world && is_mirrored(to_world) && turn_triangles(g, mesh, index)) return CDL_BAD_INPUT;
+  if (to_world && pack_mirrors(to_world) && turn_triangles(g, mesh, index)) return CDL_BAD_INPUT;
 
   const uint32_t *indices = g->indices[index] ? g->indices[index] : mesh->indices;
   for (uint32_t i = 0; i < mesh->triangle_count; i++) {

@@ -18,12 +18,10 @@ enum { POWER_POINTS = 5 };
 
 static double luminance(const float c[3]) { return color_luminance(v3(c[0], c[1], c[2])); }
 
-static vec3 to_world_point(const float m[12], const float *p) {
-  double out[3];
-  for (int r = 0; r < 3; r++)
-    out[r] = (double)m[4 * r] * p[0] + (double)m[4 * r + 1] * p[1] + (double)m[4 * r + 2] * p[2] +
-             m[4 * r + 3];
-  return v3((float)out[0], (float)out[1], (float)out[2]);
+static vec3 world_point(const float to_world[12], const float *p) {
+  float out[3];
+  pack_point(to_world, p, out);
+  return v3(out[0], out[1], out[2]);
 }
 
 /* Mean luminance over the triangle. A guess will do: what it misses is found by hitting it. */
@@ -50,11 +48,6 @@ static void set_vec(float out[3], vec3 v) {
   out[2] = v.z;
 }
 
-static int is_mirrored(const float m[12]) {
-  vec3 x = v3(m[0], m[1], m[2]), y = v3(m[4], m[5], m[6]), z = v3(m[8], m[9], m[10]);
-  return v3_dot(x, v3_cross(y, z)) < 0.0f;
-}
-
 /* The light of one triangle of an instance, and its power. */
 static double pack_triangle_light(const cdl_Pack *pack, const float to_world[12], uint32_t number,
                                   cdl_Light *light) {
@@ -64,7 +57,7 @@ static double pack_triangle_light(const cdl_Pack *pack, const float to_world[12]
   const float *p = pack->attributes + shape->positions;
   vec3 corner[3];
   for (int i = 0; i < 3; i++)
-    corner[i] = to_world_point(to_world, p + 3 * (size_t)triangle->corner[i]);
+    corner[i] = world_point(to_world, p + 3 * (size_t)triangle->corner[i]);
   vec3 e1 = v3_sub(corner[1], corner[0]);
   vec3 e2 = v3_sub(corner[2], corner[0]);
   int double_sided = (material->flags & CDL_MATERIAL_DOUBLE_SIDED) != 0;
@@ -73,7 +66,7 @@ static double pack_triangle_light(const cdl_Pack *pack, const float to_world[12]
   light->triangle = number;
   light->material = shape->material;
   light->flags = (double_sided ? CDL_LIGHT_DOUBLE_SIDED : 0u) |
-                 (is_mirrored(to_world) ? CDL_LIGHT_MIRRORED : 0u);
+                 (pack_mirrors(to_world) ? CDL_LIGHT_MIRRORED : 0u);
   light->area = 0.5f * v3_length(v3_cross(e1, e2));
   set_vec(light->p, corner[0]);
   set_vec(light->e1, e1);

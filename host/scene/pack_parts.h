@@ -4,6 +4,11 @@
 
 #include "scene/pack.h"
 
+/* Where an instance puts a point of its mesh, and whether it mirrors it. In double: what is baked
+ * and what is worked out from a light's corners must agree. */
+void pack_point(const float to_world[12], const float *point, float out[3]);
+int pack_mirrors(const float to_world[12]);
+
 /* calloc that reports; NULL means failure. A count of 0 gives one zeroed element, so that kernels
  * have something to point at. */
 void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size);
