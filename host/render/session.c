@@ -84,6 +84,10 @@ static cdl_Status watch_kernels(cdl_Session *session) {
 
 static void note_scene(cdl_Session *session, const cdl_Pack *pack) {
   cdl_RenderStats *stats = &session->stats;
+  if (session->scene->environment.assumed)
+    log_note(session->log,
+             "%s: the scene has no light; a neutral environment of radiance 1 is put around it",
+             session->scene->path);
   stats->triangles = 0;
   for (uint32_t i = 0; i < session->scene->instance_count; i++)
     stats->triangles += session->scene->meshes[session->scene->instances[i].mesh].triangle_count;

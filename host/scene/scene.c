@@ -55,9 +55,7 @@ static cdl_Status complete_scene(Builder *builder) {
   struct cdl_Scene *scene = builder->scene;
   if (!scene->environment.present && scene->light_count == 0 && !emits(scene)) {
     scene->environment = (cdl_SceneEnvironment){
-        .present = 1, .image = CDL_NONE, .radiance = {1, 1, 1}, .strength = 1};
-    document_note(builder->doc, NULL, "",
-                  "the scene has no light; a neutral environment of radiance 1 is put around it.");
+        .present = 1, .assumed = 1, .image = CDL_NONE, .radiance = {1, 1, 1}, .strength = 1};
   }
   if (scene->camera_count > 0) return CDL_OK;
   cdl_SceneCamera *camera = array_push((void **)&scene->cameras, 0, sizeof *camera);

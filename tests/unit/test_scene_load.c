@@ -75,7 +75,7 @@ static void test_completed(void **state) {
   assert_int_equal(scene->environment.present, 1);
   assert_int_equal(scene->environment.image, CDL_NONE);
   NEAR(scene->environment.radiance[1] * scene->environment.strength, 1);
-  assert_non_null(strstr(scene_notes, "no light"));
+  assert_int_equal(scene->environment.assumed, 1);
   assert_int_equal(scene->camera_count, 1);
   NEAR(scene->bounds[1][1], 2);
   const float *m = scene->cameras[0].to_world;
