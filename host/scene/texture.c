@@ -23,19 +23,36 @@ static uint32_t wrap_mode(const json_t *sampler, const char *name) {
                                : CDL_WRAP_REPEAT;
 }
 
+/* In the maps of the builder: what was said to be missing. */
+#define NOTED (CDL_NONE - 1)
+
 static int is_decodable(const Builder *builder, uint32_t image) {
   return image != DOCUMENT_NONE && builder->doc->images[image].data;
 }
 
+/* Once for each image, or texture without one, however many materials show it. */
+static void note_missing(Builder *builder, uint32_t source, const json_t *texture, uint32_t image) {
+  const json_t *ktx2 = json_get_extension(texture, "KHR_texture_basisu");
+  if (image == DOCUMENT_NONE) image = json_get_index(ktx2, "source");
+  builder->texture_map[source] = NOTED;
+  if (image == DOCUMENT_NONE) {
+    document_note(builder->doc, NULL, AT("/textures/%u", source),
+                  "it has no image; where it is used, the factor alone counts.");
+  } else if (builder->image_map[image] != NOTED) {
+    builder->image_map[image] = NOTED;
+    document_note(builder->doc, NULL, AT("/images/%u", image),
+                  "the image is missing or of a kind that is not supported (KTX2 is not); where it "
+                  "is used, the factor alone counts.");
+  }
+}
+
 /* EXT_texture_webp comes first, then the plain source; KTX2 is not decoded. */
-static uint32_t texture_image(Builder *builder, const char *pointer, const json_t *texture) {
+static uint32_t texture_image(Builder *builder, uint32_t source, const json_t *texture) {
   const json_t *webp = json_get_extension(texture, "EXT_texture_webp");
   uint32_t image = json_get_index(webp, "source"), plain = json_get_index(texture, "source");
   if (!is_decodable(builder, image)) image = plain;
   if (is_decodable(builder, image)) return image;
-  document_note(builder->doc, NULL, pointer,
-                "its image is missing or of a kind that is not supported (KTX2 is not); the "
-                "factor alone is used.");
+  note_missing(builder, source, texture, image);
   return CDL_NONE;
 }
 
@@ -58,16 +75,16 @@ static cdl_Status add_image(Builder *builder, uint32_t source, uint32_t *index) 
   return CDL_OK;
 }
 
-static cdl_Status add_texture(Builder *builder, const char *pointer, uint32_t source,
-                              uint32_t *index) {
+static cdl_Status add_texture(Builder *builder, uint32_t source, uint32_t *index) {
   struct cdl_Scene *scene = builder->scene;
-  *index = builder->texture_map[source];
-  if (*index != CDL_NONE) return CDL_OK;
+  const uint32_t known = builder->texture_map[source];
+  *index = known == NOTED ? CDL_NONE : known;
+  if (known != CDL_NONE) return CDL_OK;
   const json_t *root = builder->doc->root;
   const json_t *json = json_array_get(json_object_get(root, "textures"), source);
   const json_t *sampler =
       json_array_get(json_object_get(root, "samplers"), json_get_index(json, "sampler"));
-  uint32_t image = texture_image(builder, pointer, json);
+  uint32_t image = texture_image(builder, source, json);
   if (image == CDL_NONE) return CDL_OK;
   cdl_SceneTexture texture = {.wrap_s = wrap_mode(sampler, "wrapS"),
                               .wrap_t = wrap_mode(sampler, "wrapT"),
@@ -102,7 +119,7 @@ cdl_Status build_texture_ref(Builder *builder, const char *pointer, const json_t
   if (transform) read_transform(transform, ref);
   ref->uv_set = (uint32_t)json_get_number(info, "texCoord", 0);
   ref->uv_set = (uint32_t)json_get_number(transform, "texCoord", ref->uv_set);
-  cdl_Status status = add_texture(builder, pointer, json_get_index(info, "index"), &ref->texture);
+  cdl_Status status = add_texture(builder, json_get_index(info, "index"), &ref->texture);
   if (ref->uv_set > 1) {
     document_note(builder->doc, NULL, pointer,
                   "TEXCOORD_%u is not supported (0 and 1 are); the factor alone is used.",
