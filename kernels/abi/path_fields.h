@@ -42,9 +42,10 @@ CDL_FIELD(WORK, NORMAL, 3)
 CDL_FIELD(WORK, TANGENT, 3)
 /* Unit normal of a clear coat, on the side that the path comes from. */
 CDL_FIELD(WORK, COAT_NORMAL, 3)
-/* Material: index, base colour, and the parameters of its model (abi/param_fields.h), textures
- * applied. */
+/* Material: index, the medium behind its surface, base colour, and the parameters of its model
+ * (abi/param_fields.h), textures applied. */
 CDL_FIELD(WORK, MATERIAL, 1)
+CDL_FIELD(WORK, MEDIUM, 1)
 CDL_FIELD(WORK, BASE, 3)
 CDL_FIELD(WORK, PARAM, CDL_PARAM_MAX)
 /* Bits: CDL_VERTEX_*. */

@@ -6,20 +6,18 @@
 #include "media/stack.h"
 
 __kernel void pass(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
-                   CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path,
-                   CDL_GLOBAL uint *work) {
+                   CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
   CDL_FOR_EACH_ITEM(i) {
     size_t stride = wave->stride;
     uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
-    uint material = state_uint(work, CDL_WORK_MATERIAL, stride, i);
+    uint medium = state_uint(work, CDL_WORK_MEDIUM, stride, i);
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
     float passed = state_float(path, CDL_PATH_HIT_T, stride, i);
     uint counts = counts_passed(state_uint(path, CDL_PATH_COUNTS, stride, i));
 
     MediaStack before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                    state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-    MediaStack crossed =
-        media_crossed(before, materials[material].medium, (vertex & CDL_VERTEX_FRONT) != 0u);
+    MediaStack crossed = media_crossed(before, medium, (vertex & CDL_VERTEX_FRONT) != 0u);
     int boundary = (vertex & CDL_VERTEX_INTERFACE) != 0u;
     int alive = (v3_max(throughput) > 0.0f) & (counts_passes(counts) < params->pass_limit);
 

@@ -46,12 +46,14 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
     normal = surface_face_path(v3_select(front, normal, v3_neg(normal)), wo);
     uint vertex = front ? CDL_VERTEX_FRONT : 0u;
     vertex |= material->model == CDL_MODEL_INTERFACE ? CDL_VERTEX_INTERFACE : 0u;
+    vertex |= material->flags << CDL_VERTEX_FLAGS;
 
     state_set_vec3(work, CDL_WORK_POSITION, stride, i, point.position);
     state_set_vec3(work, CDL_WORK_GEOMETRIC_NORMAL, stride, i, geometric);
     state_set_vec3(work, CDL_WORK_NORMAL, stride, i, normal);
     state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
     state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
+    state_set_uint(work, CDL_WORK_MEDIUM, stride, i, material->medium);
     state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
     state_set_uint(work, CDL_WORK_VERTEX, stride, i, vertex);
   }
