@@ -75,6 +75,13 @@ void cdl_scene_free(cdl_Scene *scene); /* NULL is nothing */
  * was replaced, 64 hexadecimal digits; valid as long as the scene. */
 const char *cdl_scene_sha256(const cdl_Scene *scene);
 
+/* What is in a scene, and what of it is not supported, as a JSON text that the caller frees; NULL
+ * if memory is short. The members are those of `candela info --json`. */
+char *cdl_scene_info_json(const cdl_Scene *scene);
+
+/* The same for people, several lines. */
+char *cdl_scene_info_text(const cdl_Scene *scene);
+
 /* An OpenCL device, opened. One session uses it at a time; others may open it once more. */
 typedef struct cdl_Device cdl_Device;
 
@@ -83,6 +90,15 @@ typedef struct cdl_Device cdl_Device;
 cdl_Status cdl_device_open(const cdl_Log *log, const char *selector, cdl_Device **device);
 
 void cdl_device_close(cdl_Device *device); /* NULL is nothing */
+
+/* Every platform and device, what it lacks, whether it is exact (measured where its driver does not
+ * say so) and why it cannot be used, as a JSON text that the caller frees: the members of `candela
+ * devices --json`. CDL_DEVICE if none can be used: *json is set then as well, but where they could
+ * not even be listed it is NULL. */
+cdl_Status cdl_devices_json(const cdl_Log *log, char **json);
+
+/* The same for people, several lines. */
+cdl_Status cdl_devices_text(const cdl_Log *log, char **text);
 
 /* Told of each step of a long preparation, "compiling kernel": `done` of `total`. */
 typedef void (*cdl_Stage)(void *user, const char *what, uint64_t done, uint64_t total);

@@ -46,6 +46,10 @@ const char *cli_closest(const char *text, const char *const *names);
 extern const cdl_Log cli_log;
 extern int cli_quiet;
 
+/* Prints what the library told, a text that is freed here (NULL: memory was short), on standard
+ * output. CDL_OUTPUT, reported, if that cannot be written. */
+cdl_Status cli_print(char *text);
+
 /* A line on standard error that replaces the one before; nothing is shown where standard error is
  * no terminal or cli_quiet is set. */
 void cli_progress_stage(void *user, const char *what, uint64_t done, uint64_t total);

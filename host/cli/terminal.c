@@ -1,12 +1,15 @@
 /* Messages, the progress line, and signals. */
 #include "cli/cli.h"
 
+#include <errno.h>
 #include <signal.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
 
 #include "core/clock.h"
+#include "core/log.h"
 
 enum { BAR = 24, REFRESH_HZ = 10 };
 
@@ -35,6 +38,15 @@ static void write_message(void *user, cdl_LogLevel level, const char *message) {
 }
 
 const cdl_Log cli_log = {write_message, NULL};
+
+cdl_Status cli_print(char *text) {
+  if (!text) return log_fail(&cli_log, CDL_OUTPUT, "not enough memory for what is to be printed");
+  const int failed = fputs(text, stdout) < 0 || fflush(stdout);
+  free(text);
+  return failed ? log_fail(&cli_log, CDL_OUTPUT, "standard output: could not be written: %s",
+                           strerror(errno))
+                : CDL_OK;
+}
 
 static void show_line(const char *line) {
   fprintf(stderr, "\r\033[K%s", line);

@@ -35,3 +35,14 @@ char *text_duplicate(const char *from) {
   if (copy) text_copy(copy, size, from);
   return copy;
 }
+
+char *text_of_json(const json_t *json) {
+  char *text = json ? json_dumps(json, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
+  const size_t size = text ? strlen(text) : 0;
+  char *ended = text ? realloc(text, size + 2) : NULL;
+  if (ended)
+    memcpy(ended + size, "\n", 2);
+  else
+    free(text);
+  return ended;
+}

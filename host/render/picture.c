@@ -6,6 +6,7 @@
 
 #include "core/clock.h"
 #include "core/log.h"
+#include "core/text.h"
 #include "render/job.h"
 #include "render/output.h"
 #include "render/statistics.h"
@@ -88,5 +89,5 @@ cdl_Status cdl_picture_write(cdl_Picture *picture, const char *path, const cdl_D
 }
 
 char *cdl_picture_statistics_json(const cdl_Picture *picture) {
-  return statistics_text(picture->statistics);
+  return text_of_json(picture->statistics);
 }

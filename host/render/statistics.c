@@ -154,14 +154,3 @@ void statistics_add(json_t *sum, const json_t *part) {
   sum_members(json_object_get(sum, "rays"), json_object_get(part, "rays"));
   add_kernels(json_object_get(sum, "kernels"), json_object_get(part, "kernels"));
 }
-
-char *statistics_text(const json_t *statistics) {
-  char *text = statistics ? json_dumps(statistics, JSON_INDENT(2) | JSON_REAL_PRECISION(9)) : NULL;
-  const size_t size = text ? strlen(text) : 0;
-  char *ended = text ? realloc(text, size + 2) : NULL;
-  if (ended)
-    memcpy(ended + size, "\n", 2);
-  else
-    free(text);
-  return ended;
-}

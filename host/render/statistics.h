@@ -17,8 +17,4 @@ void statistics_add(json_t *sum, const json_t *part);
 /* Sets what follows from the film and the sums: film_sha256, samples and mrays_per_s. */
 cdl_Status statistics_finish(json_t *statistics, const cdl_Film *film);
 
-/* As text that ends in a newline; the caller frees it. NULL if memory is short or `statistics` is.
- */
-char *statistics_text(const json_t *statistics);
-
 #endif
