@@ -1,0 +1,98 @@
+#include "tests/device/bsdf_chart.h"
+
+#include <math.h>
+
+enum { MAX_DEPTH = 8 };
+
+void bsdf_chart_init(BsdfChart *chart, const double middle[3], double width) {
+  double length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2]);
+  double z[3] = {middle[0] / length, middle[1] / length, middle[2] / length};
+  double t = hypot(z[0], z[1]), x[3] = {t > 0 ? -z[1] / t : 1, t > 0 ? z[0] / t : 0, 0};
+  for (int i = 0; i < 3; i++) {
+    int j = (i + 1) % 3, k = (i + 2) % 3;
+    chart->axes[0][i] = x[i];
+    chart->axes[1][i] = z[j] * x[k] - z[k] * x[j];
+    chart->axes[2][i] = z[i];
+  }
+  chart->spread = fmin(2 * width * width * z[2] * z[2], 1);
+  chart->aspect = fmin(fmax(z[2], width), 1);
+  chart->range = log1p((1 + t) / chart->spread); /* the farthest point of the horizon */
+}
+
+BsdfChartSetup bsdf_chart_setup(const BsdfChart *chart) {
+  BsdfChartSetup setup = {.spread = (float)chart->spread,
+                          .inverse_aspect = (float)(1 / chart->aspect),
+                          .inverse_range = (float)(1 / chart->range)};
+  for (int i = 0; i < 9; i++) setup.axes[i] = (float)chart->axes[i / 3][i % 3];
+  return setup;
+}
+
+/* Times the Jacobian; `angle` is the chart's, from upwards. */
+static double density_at(const BsdfChart *c, double s, double radius, double angle) {
+  double sine = c->aspect * sin(angle), cosine = cos(angle), side2 = sine * sine + cosine * cosine;
+  double scale = radius / sqrt(side2), l[3] = {-scale * sine, scale * cosine, 1 - s}, w[3];
+  for (int i = 0; i < 3; i++)
+    w[i] = l[0] * c->axes[0][i] + l[1] * c->axes[1][i] + l[2] * c->axes[2][i];
+  if (c->below) w[2] = -w[2];
+  return c->density(c->context, w) * (c->spread + s) * c->aspect / side2;
+}
+
+static const double nodes[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856,
+                                0.861136311594053};
+static const double weights[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546,
+                                  0.347854845137454};
+
+/* Cuts the angles of a ring to those above the horizon. */
+static void clip(const BsdfChart *c, double s, double radius, double *low, double *high) {
+  double rise = radius * c->axes[1][2], level = (1 - s) * c->axes[2][2], end = M_PI;
+  if (level <= -rise) end = 0;
+  if (fabs(level) < rise) {
+    double cosine = -level / rise;
+    end = atan2(sqrt(1 - cosine * cosine), c->aspect * cosine);
+  }
+  *low = fmax(*low, -end);
+  *high = fmin(*high, end);
+}
+
+/* Gauss and Legendre, 4 x 4 points; x in [0,1], y in turns. */
+static double gauss(const BsdfChart *c, double x0, double x1, double y0, double y1) {
+  double hx = 0.5 * (x1 - x0), sum = 0;
+  for (int i = 0; i < 4; i++) {
+    double s = c->spread * expm1((x0 + hx * (1 + nodes[i])) * c->range);
+    double radius = sqrt(fmax(s * (2 - s), 0)), line = 0;
+    double low = 2 * M_PI * (y0 - 0.5), high = 2 * M_PI * (y1 - 0.5);
+    clip(c, s, radius, &low, &high);
+    double hy = 0.5 * (high - low);
+    if (hy <= 0) continue;
+    for (int j = 0; j < 4; j++)
+      line += weights[j] * density_at(c, s, radius, low + hy * (1 + nodes[j]));
+    sum += weights[i] * hy * line;
+  }
+  return sum * hx * c->range;
+}
+
+static double refine(const BsdfChart *c, double x0, double x1, double y0, double y1, double whole,
+                     int depth) {
+  double xs[3] = {x0, 0.5 * (x0 + x1), x1}, ys[3] = {y0, 0.5 * (y0 + y1), y1};
+  double parts[4], sum = 0;
+  for (int i = 0; i < 4; i++)
+    sum += parts[i] = gauss(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1]);
+  if (depth == MAX_DEPTH || fabs(sum - whole) <= fmax(3e-4 * sum, 1e-7)) return sum;
+  sum = 0;
+  for (int i = 0; i < 4; i++)
+    sum += refine(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1], parts[i], depth + 1);
+  return sum;
+}
+
+double bsdf_chart_integrate(const BsdfChart *chart, double cells[BSDF_CELLS]) {
+  double total = 0;
+#pragma omp parallel for schedule(dynamic, 16) reduction(+ : total)
+  for (unsigned i = 0; i < BSDF_CELLS; i++) {
+    double x0 = (double)(i / BSDF_CELLS_Y) / BSDF_CELLS_X, x1 = x0 + 1.0 / BSDF_CELLS_X;
+    double y0 = (double)(i % BSDF_CELLS_Y) / BSDF_CELLS_Y, y1 = y0 + 1.0 / BSDF_CELLS_Y;
+    double whole = gauss(chart, x0, x1, y0, y1);
+    cells[i] = refine(chart, x0, x1, y0, y1, whole, 0);
+    total += cells[i];
+  }
+  return total;
+}
