@@ -7,6 +7,7 @@
 #include "core/clock.h"
 #include "core/hash.h"
 #include "core/log.h"
+#include "core/text.h"
 #include "image/image_file.h"
 #include "image/image_write.h"
 #include "render/session.h"
@@ -221,16 +222,15 @@ cdl_Status cdl_session_pixels(const cdl_Session *session, float *rgb) {
 
 char *cdl_session_statistics_json(cdl_Session *session) {
   json_t *json = statistics_of_session(session);
-  char *text = statistics_text(json);
+  char *text = text_of_json(json);
   json_decref(json);
   return text;
 }
 
-/* The profile watches from the moment the device is prepared on, so that is part of its wall time.
- */
+/* The profile watches from the moment the device is prepared on, so that is part of its wall time:
+ * kernels are launched there as well. */
 char *cdl_session_profile_text(cdl_Session *session) {
-  const cdl_RenderStats *stats = &session->stats;
-  const double wall = stats->compile_s + stats->upload_s + stats->render_s - session->resumed_s;
+  const double wall = session->prepare_s + session->stats.render_s - session->resumed_s;
   char *text = NULL;
   size_t size;
   FILE *out = session->profile ? open_memstream(&text, &size) : NULL;

@@ -118,11 +118,12 @@ static cdl_Status put_on_device(cdl_Session *session, const cdl_SceneCamera *cam
   if (status) return status;
   note_scene(session, pack);
   cdl_Params params = make_params(session, camera, pack);
-  double before = device_build_seconds(session->device);
+  const double begin = clock_now(), built = device_build_seconds(session->device);
   status = wavefront_create(session->device, pack, &params, session->film, wave_paths(session),
                             s->stage, s->stage_user, &session->wavefront);
   if (status) return status;
-  session->stats.compile_s = device_build_seconds(session->device) - before;
+  session->prepare_s = clock_now() - begin;
+  session->stats.compile_s = device_build_seconds(session->device) - built;
   session->stats.upload_s = wavefront_upload_seconds(session->wavefront);
   return CDL_OK;
 }

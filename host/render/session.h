@@ -33,6 +33,7 @@ struct cdl_Session {
   cdl_Profile *profile; /* NULL unless settings.profile */
   cdl_RenderStats stats;
   double resumed_s;    /* of stats.render_s: spent before the checkpoint */
+  double prepare_s;    /* making the device ready: uploads, compilation, first launches */
   double start_s;      /* clock_now() when the session was created */
   uint32_t next_block; /* the pass to come: first block of all pixels not yet finished */
   uint32_t next_pixel; /* pixels of that pass that are finished */
