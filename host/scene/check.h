@@ -30,7 +30,8 @@ cdl_Status check_mesh_data(Document *doc);
 /* Joints that a skin has, weights that are not negative, as many of them as morph targets. */
 cdl_Status check_deformation(Document *doc);
 
-/* Fills doc->images with encoded bytes of a kind that can be decoded, or none. */
+/* Fills doc->images with encoded bytes of a kind that can be decoded, or none (NULL; of KTX2, which
+ * is not decoded, the size is left). */
 cdl_Status check_images(Document *doc);
 
 /* Every one of these checks. */

@@ -42,6 +42,13 @@ static cdl_Status check_version(Document *doc) {
   return CDL_OK;
 }
 
+static int is_used(const Document *doc, const char *name) {
+  const json_t *used = json_object_get(doc->root, "extensionsUsed");
+  for (size_t i = 0; i < json_array_size(used); i++)
+    if (strcmp(json_string_value(json_array_get(used, i)), name) == 0) return 1;
+  return 0;
+}
+
 cdl_Status check_asset(Document *doc) {
   const json_t *required = json_object_get(doc->root, "extensionsRequired");
   for (size_t i = 0; i < json_array_size(required); i++) {
@@ -53,6 +60,9 @@ cdl_Status check_asset(Document *doc) {
                            "the scene cannot be shown without %.80s, which is not supported; "
                            "export it without.",
                            name);
+    if (!is_used(doc, name))
+      return document_fail(doc, AT("/extensionsRequired/%zu", i), "UNUSED_EXTENSION_REQUIRED",
+                           "%.80s is not listed in extensionsUsed.", name);
   }
   return check_version(doc);
 }

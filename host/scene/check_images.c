@@ -78,7 +78,7 @@ static cdl_Status check_kind(Document *doc, uint32_t i, const json_t *json, cons
                          "the header of the picture is damaged.");
   if (kind == KIND_KTX2) {
     free(bytes->owned);
-    *bytes = (Bytes){0};
+    *bytes = (Bytes){.size = bytes->size};
   }
   return CDL_OK;
 }

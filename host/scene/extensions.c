@@ -15,8 +15,8 @@ static const struct {
     {"EXT_meshopt_compression", CDL_EXTENSION_USED},
     {"EXT_texture_webp", CDL_EXTENSION_USED},
     {"FB_ngon_encoding", CDL_EXTENSION_IGNORED},
-    {"KHR_draco_mesh_compression", CDL_EXTENSION_USED},
     {"KHR_animation_pointer", CDL_EXTENSION_USED},
+    {"KHR_draco_mesh_compression", CDL_EXTENSION_USED},
     {"KHR_lights_punctual", CDL_EXTENSION_USED},
     {"KHR_materials_emissive_strength", CDL_EXTENSION_USED},
     {"KHR_materials_ior", CDL_EXTENSION_USED},
@@ -27,6 +27,8 @@ static const struct {
     {"KHR_mesh_quantization", CDL_EXTENSION_USED},
     {"KHR_meshopt_compression", CDL_EXTENSION_USED},
     {"KHR_node_visibility", CDL_EXTENSION_USED},
+    /* Where a texture has no other image, texture.c says that it is unsupported. */
+    {"KHR_texture_basisu", CDL_EXTENSION_IGNORED},
     {"KHR_texture_transform", CDL_EXTENSION_USED},
     {"KHR_xmp", CDL_EXTENSION_IGNORED},
     {"KHR_xmp_json_ld", CDL_EXTENSION_IGNORED},

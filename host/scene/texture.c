@@ -30,10 +30,17 @@ static int is_decodable(const Builder *builder, uint32_t image) {
   return image != DOCUMENT_NONE && builder->doc->images[image].data;
 }
 
+/* check_images() leaves the size of what it found to be KTX2. */
+static int is_ktx2(const Builder *builder, uint32_t image) {
+  return !is_decodable(builder, image) && builder->doc->images[image].size;
+}
+
 /* Once for each image, or texture without one, however many materials show it. */
-static void note_missing(Builder *builder, uint32_t source, const json_t *texture, uint32_t image) {
-  const json_t *ktx2 = json_get_extension(texture, "KHR_texture_basisu");
-  if (image == DOCUMENT_NONE) image = json_get_index(ktx2, "source");
+static cdl_Status note_missing(Builder *builder, uint32_t source, const json_t *texture) {
+  static const char *const extensions[] = {"EXT_texture_webp", "KHR_texture_basisu"};
+  uint32_t image = json_get_index(texture, "source");
+  for (int i = 0; i < 2 && image == DOCUMENT_NONE; i++)
+    image = json_get_index(json_get_extension(texture, extensions[i]), "source");
   builder->texture_map[source] = NOTED;
   if (image == DOCUMENT_NONE) {
     document_note(builder->doc, NULL, AT("/textures/%u", source),
@@ -41,19 +48,20 @@ static void note_missing(Builder *builder, uint32_t source, const json_t *textur
   } else if (builder->image_map[image] != NOTED) {
     builder->image_map[image] = NOTED;
     document_note(builder->doc, NULL, AT("/images/%u", image),
-                  "the image is missing or of a kind that is not supported (KTX2 is not); where it "
-                  "is used, the factor alone counts.");
+                  "the image is %s; where it is used, the factor alone counts.",
+                  is_ktx2(builder, image) ? "KTX2 (KHR_texture_basisu), which is not supported"
+                                          : "missing or of a kind that is not supported");
   }
+  if (image == DOCUMENT_NONE || !is_ktx2(builder, image)) return CDL_OK;
+  return extension_mark(builder, "KHR_texture_basisu", CDL_EXTENSION_UNSUPPORTED);
 }
 
-/* EXT_texture_webp comes first, then the plain source; KTX2 is not decoded. */
-static uint32_t texture_image(Builder *builder, uint32_t source, const json_t *texture) {
+/* EXT_texture_webp comes first, then the plain source; KTX2 is not decoded. CDL_NONE: no image. */
+static uint32_t texture_image(const Builder *builder, const json_t *texture) {
   const json_t *webp = json_get_extension(texture, "EXT_texture_webp");
   uint32_t image = json_get_index(webp, "source"), plain = json_get_index(texture, "source");
   if (!is_decodable(builder, image)) image = plain;
-  if (is_decodable(builder, image)) return image;
-  note_missing(builder, source, texture, image);
-  return CDL_NONE;
+  return is_decodable(builder, image) ? image : CDL_NONE;
 }
 
 static cdl_Status add_image(Builder *builder, uint32_t source, uint32_t *index) {
@@ -84,8 +92,8 @@ static cdl_Status add_texture(Builder *builder, uint32_t source, uint32_t *index
   const json_t *json = json_array_get(json_object_get(root, "textures"), source);
   const json_t *sampler =
       json_array_get(json_object_get(root, "samplers"), json_get_index(json, "sampler"));
-  uint32_t image = texture_image(builder, source, json);
-  if (image == CDL_NONE) return CDL_OK;
+  uint32_t image = texture_image(builder, json);
+  if (image == CDL_NONE) return note_missing(builder, source, json);
   cdl_SceneTexture texture = {.wrap_s = wrap_mode(sampler, "wrapS"),
                               .wrap_t = wrap_mode(sampler, "wrapT"),
                               .nearest =
