@@ -27,10 +27,18 @@ static const float *key_value(const Track *track, size_t key, unsigned part) {
   return track->values + (key * stride + (track->cubic ? part : 0)) * track->width;
 }
 
-/* The shorter arc; where it is tiny, sines would divide 0 by 0. */
-static void slerp(const float *a, const float *b, double t, double *out) {
+static void to_unit(double q[4]) {
+  double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+  for (int i = 0; i < 4; i++) q[i] = n > 0 ? q[i] / n : i == 3;
+}
+
+/* The shorter arc; where it is tiny, sines would divide 0 by 0. Keys of few bits are not unit. */
+static void slerp(const float *from, const float *to, double t, double *out) {
+  double a[4] = {from[0], from[1], from[2], from[3]}, b[4] = {to[0], to[1], to[2], to[3]};
   double d = 0, wa = 1 - t, wb = t;
-  for (int i = 0; i < 4; i++) d += (double)a[i] * b[i];
+  to_unit(a);
+  to_unit(b);
+  for (int i = 0; i < 4; i++) d += a[i] * b[i];
   double sign = d < 0 ? -1 : 1, angle = acos(fmin(1, fabs(d)));
   if (angle > 1e-6) {
     wa = sin((1 - t) * angle) / sin(angle);
@@ -59,11 +67,6 @@ static void between(const Track *track, double time, int rotation, double *out) 
     slerp(a, b, t, out);
   else
     for (size_t i = 0; i < track->width; i++) out[i] = a[i] + t * ((double)b[i] - a[i]);
-}
-
-static void to_unit(double q[4]) {
-  double n = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
-  for (int i = 0; i < 4; i++) q[i] = n > 0 ? q[i] / n : i == 3;
 }
 
 void track_sample(const Track *track, double time, int rotation, double *out) {
