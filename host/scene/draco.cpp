@@ -21,6 +21,7 @@ namespace {
  * each group of attributes, and for each byte of its attributes. */
 constexpr size_t face_bytes = 64, seam_bytes = 16, group_bytes = 16, value_bytes = 2;
 constexpr size_t most_attributes = 64, most_seams = 32;
+constexpr int most_depth = 32, most_metadata = 4096;
 
 struct Refused {
   const char *why;
@@ -40,6 +41,40 @@ uint32_t read_varint(draco::DecoderBuffer *buffer) {
   uint32_t value = 0;
   if (!draco::DecodeVarint(&value, buffer)) throw Refused{"it is cut short"};
   return value;
+}
+
+void skip(draco::DecoderBuffer *buffer, size_t size) {
+  if ((int64_t)size > buffer->remaining_size()) throw Refused{"it is cut short"};
+  buffer->Advance((int64_t)size);
+}
+
+void skip_name(draco::DecoderBuffer *buffer) {
+  uint8_t size = 0;
+  if (!buffer->Decode(&size)) throw Refused{"it is cut short"};
+  skip(buffer, size);
+}
+
+/* One set of metadata and those within: nothing uses them, but the library reads them, and takes
+ * memory for as many as each says it has within before it reads the first. */
+void guard_metadata(draco::DecoderBuffer *buffer, int depth, int *left) {
+  if (depth > most_depth || --*left < 0) throw Refused{"it has too much metadata"};
+  for (uint32_t n = read_varint(buffer); n > 0; n--) {
+    skip_name(buffer);
+    skip(buffer, read_varint(buffer));
+  }
+  for (uint32_t n = read_varint(buffer); n > 0; n--) {
+    skip_name(buffer);
+    guard_metadata(buffer, depth + 1, left);
+  }
+}
+
+void guard_all_metadata(draco::DecoderBuffer buffer) {
+  int left = most_metadata;
+  for (uint32_t n = read_varint(&buffer); n > 0; n--) {
+    read_varint(&buffer); /* which attribute it belongs to */
+    guard_metadata(&buffer, 0, &left);
+  }
+  guard_metadata(&buffer, 0, &left);
 }
 
 /* Both kinds of stream: each begins its triangles with their number, one of them after that of the
@@ -118,6 +153,7 @@ void decode(Guard *guard, draco::Mesh *out) {
   if (header.version_major != 2 || header.version_minor != 2)
     throw Refused{"its version is not 2.2, the one that glTF allows"};
   if (header.encoder_type != draco::TRIANGULAR_MESH) throw Refused{"it is no triangle mesh"};
+  if (header.flags & METADATA_FLAG_MASK) guard_all_metadata(ahead);
   draco::DecoderOptions options;
   draco::Status status;
   if (header.encoder_method == draco::MESH_EDGEBREAKER_ENCODING)

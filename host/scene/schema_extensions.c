@@ -72,6 +72,14 @@ static SCHEMA(schema_specular, "KHR_materials_specular", specular);
 static const Member transmission[] = {FACTOR("transmissionFactor"), INFO("transmissionTexture"),
                                       END};
 static SCHEMA(schema_transmission, "KHR_materials_transmission", transmission);
+static const Member diffuse_transmission[] = {
+    FACTOR("diffuseTransmissionFactor"), INFO("diffuseTransmissionTexture"),
+    COLOUR("diffuseTransmissionColorFactor", 0, 1), INFO("diffuseTransmissionColorTexture"), END};
+static SCHEMA(schema_diffuse_transmission, "KHR_materials_diffuse_transmission",
+              diffuse_transmission);
+static const Member retroreflection[] = {FACTOR("retroreflectionFactor"),
+                                         INFO("retroreflectionTexture"), END};
+static SCHEMA(schema_retroreflection, "KHR_materials_retroreflection", retroreflection);
 static const Member volume[] = {NUMBER("thicknessFactor", 0, 0, INFINITY), INFO("thicknessTexture"),
                                 NUMBER("attenuationDistance", ABOVE, 0, INFINITY),
                                 COLOUR("attenuationColor", 0, 1), END};
@@ -202,11 +210,13 @@ const ExtensionPlace schema_extensions[] = {
     {"KHR_lights_punctual", &schema_root, &schema_lights},
     {"KHR_materials_anisotropy", &schema_material, &schema_anisotropy},
     {"KHR_materials_clearcoat", &schema_material, &schema_clearcoat},
+    {"KHR_materials_diffuse_transmission", &schema_material, &schema_diffuse_transmission},
     {"KHR_materials_dispersion", &schema_material, &schema_dispersion},
     {"KHR_materials_emissive_strength", &schema_material, &schema_strength},
     {"KHR_materials_ior", &schema_material, &schema_ior},
     {"KHR_materials_iridescence", &schema_material, &schema_iridescence},
     {"KHR_materials_pbrSpecularGlossiness", &schema_material, &schema_glossiness},
+    {"KHR_materials_retroreflection", &schema_material, &schema_retroreflection},
     {"KHR_materials_sheen", &schema_material, &schema_sheen},
     {"KHR_materials_specular", &schema_material, &schema_specular},
     {"KHR_materials_transmission", &schema_material, &schema_transmission},

@@ -34,8 +34,8 @@ static void add_source(draco::Mesh *mesh, DracoSource *source, uint32_t points) 
 }
 
 size_t draco_encode(const uint32_t (*faces)[3], uint32_t face_count, uint32_t points,
-                    DracoSource *sources, int source_count, int edgebreaker, uint8_t *out,
-                    size_t room) {
+                    DracoSource *sources, int source_count, int edgebreaker, int with_metadata,
+                    uint8_t *out, size_t room) {
   draco::Mesh mesh;
   mesh.SetNumFaces(face_count);
   mesh.set_num_points(points);
@@ -44,6 +44,17 @@ size_t draco_encode(const uint32_t (*faces)[3], uint32_t face_count, uint32_t po
                  {{draco::PointIndex(faces[f][0]), draco::PointIndex(faces[f][1]),
                    draco::PointIndex(faces[f][2])}});
   for (int i = 0; i < source_count; i++) add_source(&mesh, &sources[i], points);
+  if (with_metadata) {
+    auto metadata = std::make_unique<draco::GeometryMetadata>();
+    auto inner = std::make_unique<draco::Metadata>();
+    inner->AddEntryString("made", "by hand");
+    metadata->AddSubMetadata("inner", std::move(inner));
+    metadata->AddEntryInt("answer", 42);
+    mesh.AddMetadata(std::move(metadata));
+    auto of_attribute = std::make_unique<draco::AttributeMetadata>();
+    of_attribute->AddEntryString("name", "position");
+    mesh.AddAttributeMetadata(0, std::move(of_attribute));
+  }
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(edgebreaker ? draco::MESH_EDGEBREAKER_ENCODING
                                         : draco::MESH_SEQUENTIAL_ENCODING);

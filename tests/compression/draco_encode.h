@@ -19,11 +19,11 @@ typedef struct DracoSource {
   uint32_t id; /* out: its number in the stream */
 } DracoSource;
 
-/* Encodes triangles with one vertex for each corner value. Returns the stream's size, 0 when that
- * fails or does not fit into `room`. */
+/* Encodes triangles with one vertex for each corner value, and some metadata where asked for.
+ * Returns the stream's size, 0 when that fails or does not fit into `room`. */
 size_t draco_encode(const uint32_t (*faces)[3], uint32_t face_count, uint32_t points,
-                    DracoSource *sources, int source_count, int edgebreaker, uint8_t *out,
-                    size_t room);
+                    DracoSource *sources, int source_count, int edgebreaker, int with_metadata,
+                    uint8_t *out, size_t room);
 
 #ifdef __cplusplus
 }

@@ -98,8 +98,9 @@ static void add_draco(int edgebreaker, int bits, int count) {
                             {3, GL_FLOAT, 2, 0, bits, grid.uv, 0},
                             {2, GL_UNSIGNED_BYTE, 4, 1, 0, grid.colors, 0}};
   Stream *to = &streams[stream_count++];
-  to->size = draco_encode((const uint32_t(*)[3])faces, sizeof faces / sizeof *faces, SMALL * SMALL,
-                          sources, count, edgebreaker, to->data, sizeof to->data);
+  to->size =
+      draco_encode((const uint32_t(*)[3])faces, sizeof faces / sizeof *faces, SMALL * SMALL,
+                   sources, count, edgebreaker, stream_count % 4 == 0, to->data, sizeof to->data);
   assert_true(to->size > 0);
   for (int i = 0; i < 4; i++) to->ids[i] = sources[i].id;
 }

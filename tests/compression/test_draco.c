@@ -33,7 +33,7 @@ static void describe(int bits) {
 static size_t encode(int edgebreaker, int bits) {
   describe(bits);
   size_t size = draco_encode((const uint32_t(*)[3])grid.indices, FACES, POINTS, sources, SOURCES,
-                             edgebreaker, stream, sizeof stream);
+                             edgebreaker, edgebreaker, stream, sizeof stream);
   assert_true(size > 0);
   return size;
 }
@@ -201,6 +201,23 @@ static void test_bombs(void **state) {
   }
 }
 
+/* Metadata within metadata, each with as many as there are bytes: the library takes memory for the
+ * square of the file's size. Then the same far down, and cut short. */
+static void test_metadata_bomb(void **state) {
+  (void)state;
+  enum { LEVELS = 900, SIZE = 400000 };
+  static const uint8_t head[] = {'D', 'R', 'A', 'C', 'O', 2, 2, 1, 1, 0, 0x80, 0 /* attributes */};
+  describe(0);
+  for (int deep = 0; deep < 2; deep++) {
+    const uint8_t level[] = {0, 0x80 | (deep ? 1 : 0), 0x80, deep ? 0 : 20, 0};
+    memset(stream, 0, SIZE);
+    memcpy(stream, head, sizeof head);
+    for (int i = 0; i < LEVELS; i++) memcpy(stream + sizeof head + 5 * i, level, sizeof level);
+    refused(load(SIZE, POINTS, 3 * FACES, 5123, 4, ""), "too much metadata");
+    refused(load(30, POINTS, 3 * FACES, 5123, 4, ""), "cut short");
+  }
+}
+
 static int set_up(void **state) {
   grid_make(&grid);
   for (int i = 0; i < POINTS; i++)
@@ -209,8 +226,9 @@ static int set_up(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_methods), cmocka_unit_test(test_order),
-                                     cmocka_unit_test(test_strip), cmocka_unit_test(test_refused),
-                                     cmocka_unit_test(test_bombs)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_methods), cmocka_unit_test(test_order),
+      cmocka_unit_test(test_strip),   cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_bombs),   cmocka_unit_test(test_metadata_bomb)};
   return cmocka_run_group_tests(tests, set_up, scene_folder_remove);
 }
