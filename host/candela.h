@@ -196,6 +196,10 @@ typedef struct cdl_Display {
  * suffix, CDL_OUTPUT if the folder does not take a file. */
 cdl_Status cdl_output_check(const cdl_Log *log, const char *path);
 
+/* Finds out before a render whether its format can hold a picture of this size: CDL_OUTPUT if not.
+ */
+cdl_Status cdl_session_output_check(const cdl_Session *session, const char *path);
+
 /* Writes the picture by suffix: .exr (all AOVs as layers, and what was rendered in the header;
  * block sums too if the session renders a part of the samples), .hdr, .tif, .png, .jpg. `display`
  * may be NULL. All at once: there is never half a file. */

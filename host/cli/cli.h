@@ -46,6 +46,10 @@ const char *cli_closest(const char *text, const char *const *names);
 extern const cdl_Log cli_log;
 extern int cli_quiet;
 
+/* Makes sure that what was printed on standard output is there: CDL_OUTPUT, reported once, if not.
+ */
+cdl_Status cli_flush(void);
+
 /* Prints what the library told, a text that is freed here (NULL: memory was short), on standard
  * output. CDL_OUTPUT, reported, if that cannot be written. */
 cdl_Status cli_print(char *text);

@@ -1,6 +1,5 @@
 /* candela compare: how far a picture is from a reference. */
 #include "cli/cli.h"
-#include "core/log.h"
 
 #include <float.h>
 #include <jansson.h>
@@ -154,7 +153,6 @@ int cli_compare(int argc, char **argv) {
     print_json(&difference, verdict);
   else
     print_text(&o, &difference, verdict);
-  if (fflush(stdout) || ferror(stdout))
-    return log_fail(&cli_log, CDL_OUTPUT, "standard output: could not be written");
-  return verdict;
+  const cdl_Status printed = cli_flush();
+  return printed ? printed : verdict;
 }

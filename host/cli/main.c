@@ -2,9 +2,9 @@
 #include "cli/cli.h"
 
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
-
-const char *argp_program_version = "candela " CDL_VERSION;
+#include <unistd.h>
 
 static const struct {
   const char *name;
@@ -42,6 +42,11 @@ static int unknown(const char *name) {
   return CDL_USAGE;
 }
 
+/* argp prints help and ends the program by itself. */
+static void check_output(void) {
+  if (cli_flush()) _exit(CDL_OUTPUT);
+}
+
 static int run(int index, int argc, char **argv) {
   char name[32];
   snprintf(name, sizeof name, "candela %s", commands[index].name);
@@ -51,11 +56,17 @@ static int run(int index, int argc, char **argv) {
 
 int main(int argc, char **argv) {
   argp_err_exit_status = CDL_USAGE;
+  argp_program_version = "candela " CDL_VERSION;
+  atexit(check_output);
   if (argc < 2) {
     fputs("candela: no command given; see candela --help\n", stderr);
     return CDL_USAGE;
   }
   const char *name = argv[1];
+  if (!strcmp(name, "help") && argc > 2) { /* candela help render */
+    name = argv[1] = argv[2];
+    argv[2] = "--help";
+  }
   if (!strcmp(name, "--help") || !strcmp(name, "-h") || !strcmp(name, "help")) {
     print_help(stdout);
     return CDL_OK;

@@ -50,6 +50,8 @@ static cdl_Status start_session(Render *r) {
   if (!status)
     status = cdl_session_create(&cli_log, r->device, r->scene, &o->settings, &r->session);
   cli_progress_erase();
+  for (int i = 0; i < o->output_count && !status; i++)
+    status = cdl_session_output_check(r->session, o->outputs[i]);
   if (!status && o->trace) status = cdl_trace_start(r->session, &r->trace);
   if (status || !o->resume) return status;
   if (access(o->checkpoint, F_OK) == 0) return cdl_session_resume(r->session, o->checkpoint);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "cli/cli.h"
 #include "image/image_write.h"
@@ -277,6 +278,26 @@ static int writes_exr(const RenderOptions *options) {
   return 0;
 }
 
+static int same_file(const char *a, const char *b) {
+  struct stat x, y;
+  if (!a || !b) return 0;
+  if (!strcmp(a, b)) return 1;
+  return !stat(a, &x) && !stat(b, &y) && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+}
+
+/* No output may take the place of another one, or of what is read. */
+static void refuse_overwriting(const RenderOptions *o) {
+  const char *paths[CLI_MAX_OUTPUTS + 5] = {o->scene, o->environment, o->stats, o->trace,
+                                            o->checkpoint};
+  const int count = 5 + o->output_count;
+  memcpy(paths + 5, o->outputs, (size_t)o->output_count * sizeof *paths);
+  for (int i = 2; i < count; i++)
+    for (int j = 0; j < i; j++)
+      if (same_file(paths[i], paths[j]))
+        cli_usage("%s: %s; give the output another name", paths[i],
+                  j < 2 ? "is read, and would be overwritten" : "would be written twice");
+}
+
 /* What options mean together. */
 static void check_together(RenderOptions *options) {
   cdl_Settings *s = &options->settings;
@@ -292,6 +313,7 @@ static void check_together(RenderOptions *options) {
     cli_usage("--samples needs an output that ends in .exr, which candela merge can read");
   if (s->aovs & ~1u && !writes_exr(options))
     cli_usage("--aov needs an output that ends in .exr, which has layers");
+  refuse_overwriting(options);
   if (cdl_settings_check(&cli_log, s)) exit(CDL_USAGE);
 }
 

@@ -39,13 +39,19 @@ static void write_message(void *user, cdl_LogLevel level, const char *message) {
 
 const cdl_Log cli_log = {write_message, NULL};
 
+cdl_Status cli_flush(void) {
+  static int told;
+  if (!fflush(stdout) && !ferror(stdout)) return CDL_OK;
+  if (!told++)
+    log_fail(&cli_log, CDL_OUTPUT, "standard output: could not be written: %s", strerror(errno));
+  return CDL_OUTPUT;
+}
+
 cdl_Status cli_print(char *text) {
   if (!text) return log_fail(&cli_log, CDL_OUTPUT, "not enough memory for what is to be printed");
-  const int failed = fputs(text, stdout) < 0 || fflush(stdout);
+  fputs(text, stdout);
   free(text);
-  return failed ? log_fail(&cli_log, CDL_OUTPUT, "standard output: could not be written: %s",
-                           strerror(errno))
-                : CDL_OK;
+  return cli_flush();
 }
 
 static void show_line(const char *line) {

@@ -42,6 +42,17 @@ static cdl_Status refuse_suffix(const cdl_Log *log, const char *path) {
                   path);
 }
 
+/* libjpeg would end the program. */
+enum { JPEG_MAX = 65500 };
+
+cdl_Status image_check_size(const cdl_Log *log, const char *path, int width, int height) {
+  const Target *target = find_target(path);
+  if (!target || strcmp(target->format, "jpeg") || (width <= JPEG_MAX && height <= JPEG_MAX))
+    return CDL_OK;
+  return log_fail(log, CDL_OUTPUT, "%s: JPEG holds at most %d pixels on a side; write a .png", path,
+                  JPEG_MAX);
+}
+
 cdl_Status image_check_output(const cdl_Log *log, const char *path) {
   if (!find_target(path)) return refuse_suffix(log, path);
   return image_file_probe(log, path);
@@ -89,6 +100,7 @@ cdl_Status image_write(const cdl_Log *log, const char *path, int width, int heig
                        const cdl_ImageAttribute *attributes, int attribute_count) {
   const Target *target = find_target(path);
   if (!target) return refuse_suffix(log, path);
+  if (image_check_size(log, path, width, height)) return CDL_OUTPUT;
   if (target->encoding == LAYERS) {
     const cdl_ImageLayer layer = aov_layer(CDL_AOV_BEAUTY, rgb);
     const cdl_ImagePicture picture = {width, height, &layer, 1, attributes, attribute_count};

@@ -15,6 +15,9 @@ extern "C" {
  * folder exists and takes a new file (CDL_OUTPUT). */
 cdl_Status image_check_output(const cdl_Log *log, const char *path);
 
+/* CDL_OUTPUT for a picture that is too large for the format. */
+cdl_Status image_check_size(const cdl_Log *log, const char *path, int width, int height);
+
 /* Whether `path` ends in .exr, so that image_write_exr_layers can keep all layers. */
 int image_is_exr(const char *path);
 

@@ -246,6 +246,11 @@ cdl_Status cdl_output_check(const cdl_Log *log, const char *path) {
   return image_check_output(log, path);
 }
 
+cdl_Status cdl_session_output_check(const cdl_Session *session, const char *path) {
+  const cdl_Film *film = session->film;
+  return image_check_size(session->log, path, (int)film->width, (int)film->height);
+}
+
 cdl_Status cdl_text_check(const cdl_Log *log, const char *path) {
   return image_file_probe(log, path);
 }

@@ -49,6 +49,8 @@ for command in render devices info compare merge; do
   refuses 2 "no option '--frobnicate'" $command --frobnicate
 done
 says "albedo" render --aov list
+says "Usage: candela info" help info
+for command in "" render info; do says "candela 0." $command --version; done
 refuses 2 "no command given"
 refuses 2 "did you mean 'render'?" rendr
 refuses 2 "no command 'frobnicate'; see candela --help" frobnicate
@@ -107,9 +109,24 @@ render "holds at most" -o x.exr --spp 65536 --samples 0:65536
 render "--samples needs an output that ends in .exr" -o x.png --spp 64 --samples 0:16
 
 render "--resume needs --checkpoint" -o x.png --resume
+render "x.png: would be written twice" -o x.png -o x.png
+render "x.exr: would be written twice" -o x.exr --stats x.exr
+render "s.json: would be written twice" -o x.png --trace s.json --stats s.json
+render "scene.gltf: is read" -o x.png --stats scene.gltf
+render "sky.hdr: is read" --env sky.hdr -o sky.hdr
 render "--checkpoint-every needs --checkpoint" -o x.png --checkpoint-every 5
 
 refuses 3 "scene.gltf" render scene.gltf -o x.png
+refuses 3 ".: /: IO_ERROR" render . -o x.png
+refuses 3 ".: /: IO_ERROR" info .
+refuses 3 "/dev/null" info /dev/null
+refuses 3 ".: not a regular file" compare . .
+refuses 3 ".: not a regular file" merge . -o x.exr
+refuses 5 "/dev/full: exists and is not a regular file" render scene.gltf -o x.png --stats /dev/full
+mkdir folder.png
+refuses 5 "folder.png: exists and is not a regular file" render scene.gltf -o folder.png
+rmdir folder.png
+refuses 2 "unknown image format" render scene.gltf -o /dev/full
 refuses 5 "missing/x.png" render scene.gltf -o missing/x.png
 refuses 5 "missing/s.json" render scene.gltf -o x.png --stats missing/s.json
 refuses 5 "missing/t.json" render scene.gltf -o x.png --trace missing/t.json
@@ -128,6 +145,15 @@ refuses 3 "a.exr" merge a.exr -o x.exr
 refuses 5 "missing/x.exr" merge a.exr -o missing/x.exr
 refuses 2 "no scene given" info
 refuses 3 "scene.gltf" info scene.gltf
+
+# What cannot be printed is a failure, whoever prints it, and told once.
+for arguments in --help --version "render --help" "render --aov list" "help merge" devices; do
+  timeout 60 "$candela" $arguments > /dev/full 2> err
+  got=$? good=0
+  [ $got -eq 5 ] && [ "$(grep -c "standard output: could not be written" err)" -eq 1 ] &&
+    [ "$(wc -l < err)" -eq 1 ] && good=1
+  report $good "candela $arguments > /dev/full: status $got"
+done
 
 # Nothing above may leave a file behind.
 rm -f out

@@ -61,6 +61,13 @@ done
 check "two triangles" has a.json '"triangles": 2'
 check "a path for each sample" has a.json "\"paths\": $((40 * 24 * 52))"
 check "the size follows the camera" run 0 render sheet.gltf --size 40x --spp 1 -q -o b.png
+for size in 1x1 16000x1 1x16000; do
+  check "$size pixels" run 0 render sheet.gltf --size $size --spp 1 -q -o b.exr -o b.tif
+done
+rm b.exr b.tif
+check "more than JPEG holds" run 5 render sheet.gltf --size 65536x1 --spp 1 -q -o big.jpg
+check "is refused in one line" test "$(wc -l < err)" -eq 1 -a ! -e big.jpg
+check "nothing open but files" run 0 render sheet.gltf --size 8x8 --spp 1 -o b.exr <&-
 check "a crop" render --crop 8,4,16,9 -o crop.exr --stats crop.json
 check "the picture is what the film is" run 0 compare a.exr a.exr
 check "a header tells the sheet's name" grep -qa "sheet.gltf" a.exr
