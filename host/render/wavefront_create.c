@@ -16,9 +16,23 @@ static void add_option(char *options, size_t size, int wanted, const char *defin
   if (wanted) snprintf(options + used, size - used, " -D%s", define);
 }
 
+static const struct {
+  uint32_t bit;
+  const char *define;
+} gltf_layers[] = {
+    {CDL_GLTF_LAYER_ANISOTROPY, "CDL_GLTF_ANISOTROPY"},
+    {CDL_GLTF_LAYER_CLEARCOAT, "CDL_GLTF_CLEARCOAT"},
+    {CDL_GLTF_LAYER_SHEEN, "CDL_GLTF_SHEEN"},
+    {CDL_GLTF_LAYER_IRIDESCENCE, "CDL_GLTF_IRIDESCENCE"},
+    {CDL_GLTF_LAYER_TRANSMISSION, "CDL_GLTF_TRANSMISSION"},
+    {CDL_GLTF_LAYER_DIFFUSE_TRANSMISSION, "CDL_GLTF_DIFFUSE_TRANSMISSION"},
+    {CDL_GLTF_LAYER_RETROREFLECTION, "CDL_GLTF_RETROREFLECTION"},
+    {CDL_GLTF_LAYER_DISPERSION, "CDL_GLTF_DISPERSION"},
+};
+
 static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   const cdl_PackFeatures *f = &w->features;
-  char options[512];
+  char options[1024];
   snprintf(options, sizeof options, "-DCDL_BVH_WIDTH=%d", bvh_width);
   add_option(options, sizeof options, f->textures, "CDL_TEXTURES");
   add_option(options, sizeof options, f->float_textures, "CDL_FLOAT_TEXTURES");
@@ -26,7 +40,10 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
-  add_option(options, sizeof options, f->coat_normals, "CDL_COAT_NORMALS");
+  add_option(options, sizeof options, !f->dispersion, "CDL_NO_DISPERSION");
+  for (size_t i = 0; i < sizeof gltf_layers / sizeof *gltf_layers; i++)
+    add_option(options, sizeof options, (f->gltf_layers & gltf_layers[i].bit) != 0,
+               gltf_layers[i].define);
   add_option(options, sizeof options, w->has_lights, "CDL_LIGHTS");
   add_option(options, sizeof options, f->triangle_lights, "CDL_TRIANGLE_LIGHTS");
   add_option(options, sizeof options, f->punctual_lights, "CDL_PUNCTUAL_LIGHTS");

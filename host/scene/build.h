@@ -46,6 +46,11 @@ uint32_t build_default_material(Builder *builder);
 cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *json,
                               cdl_SceneMaterial *material);
 
+/* material_khr.c: the extensions that add layers and lobes to glTF's material, over what the core
+ * says. */
+cdl_Status build_gltf_layers(Builder *builder, uint32_t index, const json_t *json,
+                             cdl_SceneMaterial *material);
+
 /* medium.c: CDL_medium and KHR_materials_volume; *index is CDL_NONE for none. */
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json, uint32_t *index);
 cdl_Status build_volume(Builder *builder, const json_t *volume, uint32_t *index);

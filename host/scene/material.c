@@ -61,40 +61,12 @@ static cdl_Status read_core(Builder *builder, const char *at, const json_t *json
   return status;
 }
 
-/* Clear and smooth glass is a dielectric of ours; thin-walled where it has no thickness
- * (KHR_materials_transmission without KHR_materials_volume). What is rough, partly opaque or
- * metallic stays with the plain material: its transmission is not supported. */
-static cdl_Status map_transmission(Builder *builder, uint32_t index, const json_t *json,
-                                   cdl_SceneMaterial *material) {
-  const json_t *transmission = json_get_extension(json, "KHR_materials_transmission");
-  const json_t *volume = json_get_extension(json, "KHR_materials_volume");
-  double factor = json_get_number(transmission, "transmissionFactor", 0);
-  float index_of_refraction = material->param[CDL_GLTF_IOR];
-  int textured =
-      json_object_get(transmission, "transmissionTexture") != NULL || material->texture_count > 0;
-  int plain = material->param[CDL_GLTF_ROUGHNESS] <= 0 && material->param[CDL_GLTF_METALLIC] <= 0;
-  if (factor <= 0) return CDL_OK;
-  if (factor < 1 || !plain || textured) {
-    document_note(builder->doc, NULL, AT("/materials/%u", index),
-                  "transmission that is rough, partial, metallic or textured is not supported; "
-                  "the surface is opaque.");
-    return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
-  }
-  material->model = CDL_MODEL_DIELECTRIC;
-  material->transmits = 1;
-  material->param[CDL_DIELECTRIC_IOR] = index_of_refraction;
-  material->thin = json_get_number(volume, "thicknessFactor", 0) <= 0;
-  if (!material->thin) return build_volume(builder, volume, &material->medium);
-  document_note(builder->doc, NULL, AT("/materials/%u", index),
-                "thin-walled glass is not supported; it is rendered as a solid.");
-  return extension_mark(builder, "KHR_materials_transmission", CDL_EXTENSION_UNSUPPORTED);
-}
-
 static cdl_Status read_khr(Builder *builder, uint32_t index, const json_t *json,
                            cdl_SceneMaterial *material) {
-  cdl_Status status = build_params(builder, AT("/materials/%u/extensions/KHR_materials_ior", index),
-                                   json_get_extension(json, "KHR_materials_ior"), ior, material);
-  if (!status) status = map_transmission(builder, index, json, material);
+  cdl_Status status =
+      build_params(builder, AT("/materials/%u/extensions/KHR_materials_ior", index),
+                   json_get_extension(json, "KHR_materials_ior"), ior, material);
+  if (!status) status = build_gltf_layers(builder, index, json, material);
   if (json_get_extension(json, "KHR_materials_unlit")) material->model = CDL_MODEL_UNLIT;
   return status;
 }

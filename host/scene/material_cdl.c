@@ -13,7 +13,16 @@ static const ParamMember conductor[] = {ALPHA(CDL_CONDUCTOR_ALPHA, 0),
                                         {"eta", CDL_CONDUCTOR_ETA, 3, {0}, NULL, 0},
                                         {"k", CDL_CONDUCTOR_K, 3, {0}, NULL, 0},
                                         END};
-static const ParamMember dielectric[] = {{"ior", CDL_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0}, END};
+static const ParamMember dielectric[] = {{"ior", CDL_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0},
+                                         {"abbe", CDL_DIELECTRIC_ABBE, 1, {0}, NULL, 0},
+                                         END};
+static const ParamMember rough_dielectric[] = {
+    ALPHA(CDL_ROUGH_DIELECTRIC_ALPHA, 0),
+    {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0},
+    {"abbe", CDL_ROUGH_DIELECTRIC_ABBE, 1, {0}, NULL, 0},
+    END};
+static const ParamMember plastic[] = {
+    ALPHA(CDL_PLASTIC_ALPHA, 0.1f), {"ior", CDL_PLASTIC_IOR, 1, {1.5f}, NULL, 0}, END};
 static const ParamMember retroreflector[] = {ALPHA(CDL_RETROREFLECTOR_ALPHA, 0.05f),
                                              {"ior", CDL_RETROREFLECTOR_IOR, 1, {1.5f}, NULL, 0},
                                              END};
@@ -58,10 +67,22 @@ static const Model models[] = {
     {"retroreflector", CDL_MODEL_RETROREFLECTOR, REFLECTANCE, 1, retroreflector},
     {"conductor", CDL_MODEL_CONDUCTOR, NULL, NULL, 1, conductor},
     {"dielectric", CDL_MODEL_DIELECTRIC, "transmittance", "transmittanceTexture", 1, dielectric},
+    {"plastic", CDL_MODEL_PLASTIC, REFLECTANCE, 0.5f, plastic},
     {"oren_nayar", CDL_MODEL_OREN_NAYAR, REFLECTANCE, 0.5f, oren_nayar},
     {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.8f, disney},
     {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
+
+/* What "dielectric" is where its alpha is not 0. */
+static const Model frosted = {
+    "dielectric",    CDL_MODEL_ROUGH_DIELECTRIC, "transmittance", "transmittanceTexture", 1,
+    rough_dielectric};
+
+static int is_rough(const json_t *json) {
+  float alpha[2] = {0, 0};
+  json_get_numbers(json, "alpha", 2, alpha);
+  return alpha[0] > 0 || alpha[1] > 0;
+}
 
 static const Model *find_model(const char *name) {
   for (size_t i = 0; i < sizeof models / sizeof *models; i++)
@@ -105,28 +126,9 @@ static void read_flags(const json_t *json, cdl_SceneMaterial *material) {
   json_get_numbers(json, "alpha", 2, alpha);
   material->anisotropic = alpha[0] != alpha[1] || json_get_number(json, "anisotropic", 0) != 0;
   material->transmits = material->model == CDL_MODEL_DIELECTRIC ||
+                        material->model == CDL_MODEL_ROUGH_DIELECTRIC ||
                         (material->model == CDL_MODEL_DISNEY &&
                          (json_get_number(json, "specTrans", 0) > 0 || material->thin));
-}
-
-/* Parameters that this renderer knows of but does not act on. */
-static cdl_Status note_left_out(Builder *builder, const char *at, const json_t *json,
-                                const cdl_SceneMaterial *material) {
-  cdl_Status status = CDL_OK;
-  float alpha[2] = {0, 0};
-  json_get_numbers(json, "alpha", 2, alpha);
-  if (material->energy_compensation)
-    status =
-        not_supported(builder, "energyCompensation", at, "energyCompensation", "it is left out");
-  if (!status && json_is_number(json_object_get(json, "abbe")))
-    status = not_supported(builder, "abbe", at, "abbe", "the glass does not disperse");
-  if (!status && material->model == CDL_MODEL_DIELECTRIC && (alpha[0] > 0 || alpha[1] > 0))
-    status = not_supported(builder, "rough dielectric", at, "a rough dielectric",
-                           "it is rendered smooth");
-  if (!status && material->model == CDL_MODEL_DIELECTRIC && material->thin)
-    status = not_supported(builder, "thin dielectric", at, "a thin dielectric",
-                           "it is rendered as a solid");
-  return status;
 }
 
 cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *json,
@@ -134,6 +136,7 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   const char *at = AT("/materials/%u/extensions/CDL_material", index);
   const char *name = json_get_string(json, "model", "");
   const Model *model = find_model(name);
+  if (model && model->model == CDL_MODEL_DIELECTRIC && is_rough(json)) model = &frosted;
   if (!model)
     return not_supported(builder, name, at, AT("the model %s", name),
                          "the plain glTF material takes its place");
@@ -154,7 +157,7 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   if (model->model == CDL_MODEL_DISNEY) material->param[CDL_DISNEY_THIN] = (float)material->thin;
   if (!status && model->model == CDL_MODEL_CONDUCTOR)
     status = read_metal(builder, at, json, material);
-  return status ? status : note_left_out(builder, at, json, material);
+  return status;
 }
 
 const char *scene_model_name(uint32_t model) {

@@ -22,7 +22,8 @@ typedef struct cdl_PackFeatures {
   int opacity;  /* holes and half transparent surfaces among them */
   int media;    /* any medium that is not vacuum */
   int triangle_lights, punctual_lights, environment;
-  int coat_normals;            /* clear coats, which have normals of their own */
+  uint32_t gltf_layers;        /* CDL_GLTF_LAYER_* */
+  int dispersion;              /* glass that disperses */
   int models[CDL_MODEL_COUNT]; /* 1: used; 2: and emissive */
 } cdl_PackFeatures;
 

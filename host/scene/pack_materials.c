@@ -180,6 +180,9 @@ static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
   features->textures |= m->base_texture.texture != CDL_NONE ||
                         m->normal_texture.texture != CDL_NONE ||
                         m->coat_normal_texture.texture != CDL_NONE || m->texture_count > 0;
+  features->dispersion |=
+      (m->model == CDL_MODEL_DIELECTRIC && m->param[CDL_DIELECTRIC_ABBE] > 0) ||
+      (m->model == CDL_MODEL_ROUGH_DIELECTRIC && m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0);
   features->emission_textures |= emissive && m->emission_texture.texture != CDL_NONE;
 }
 
@@ -194,6 +197,7 @@ cdl_Status pack_materials(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *
   for (uint32_t i = 0; i < scene->material_count; i++) {
     pack_material(&scene->materials[i], pack, &pack->materials[i]);
     note_features(&pack->materials[i], &pack->features);
+    pack->features.gltf_layers |= scene_gltf_layers(&scene->materials[i]);
   }
   return CDL_OK;
 }

@@ -33,6 +33,18 @@ typedef struct cdl_TextureRef {
   float transform[6];
 } cdl_TextureRef;
 
+/* Bits of scene_gltf_layers(). */
+enum {
+  CDL_GLTF_LAYER_ANISOTROPY = 1,
+  CDL_GLTF_LAYER_CLEARCOAT = 2,
+  CDL_GLTF_LAYER_SHEEN = 4,
+  CDL_GLTF_LAYER_IRIDESCENCE = 8,
+  CDL_GLTF_LAYER_TRANSMISSION = 16,
+  CDL_GLTF_LAYER_DIFFUSE_TRANSMISSION = 32,
+  CDL_GLTF_LAYER_RETROREFLECTION = 64,
+  CDL_GLTF_LAYER_DISPERSION = 128
+};
+
 typedef enum cdl_AlphaMode { CDL_ALPHA_OPAQUE, CDL_ALPHA_MASK, CDL_ALPHA_BLEND } cdl_AlphaMode;
 typedef enum cdl_Distribution { CDL_GGX, CDL_BECKMANN } cdl_Distribution;
 typedef enum cdl_Masking { CDL_MASKING_CORRELATED, CDL_MASKING_SEPARABLE } cdl_Masking;
@@ -193,6 +205,9 @@ const char *scene_model_name(uint32_t model);
 
 /* Words of cdl_SceneMaterial.param that a CDL_MODEL_* uses. */
 uint32_t scene_model_params(uint32_t model);
+
+/* Which layers (CDL_GLTF_LAYER_*) a material of the model GLTF_LAYERED has. */
+uint32_t scene_gltf_layers(const cdl_SceneMaterial *material);
 
 /* The framing camera for a scene's bounds: from front-right and above, all in view. */
 void scene_frame_camera(const float bounds[2][3], cdl_SceneCamera *camera);

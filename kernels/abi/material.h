@@ -31,11 +31,14 @@
   M(UNLIT, unlit, 0)                                                                               \
   M(MIRROR, mirror, 0)                                                                             \
   M(DIELECTRIC, dielectric, CDL_DIELECTRIC_PARAMS)                                                 \
+  M(ROUGH_DIELECTRIC, rough_dielectric, CDL_ROUGH_DIELECTRIC_PARAMS)                               \
   M(CONDUCTOR, conductor, CDL_CONDUCTOR_PARAMS)                                                    \
+  M(PLASTIC, plastic, CDL_PLASTIC_PARAMS)                                                          \
   M(OREN_NAYAR, oren_nayar, CDL_OREN_NAYAR_PARAMS)                                                 \
   M(RETROREFLECTOR, retroreflector, CDL_RETROREFLECTOR_PARAMS)                                     \
   M(DISNEY, disney, CDL_DISNEY_PARAMS)                                                             \
   M(GLTF, gltf, CDL_GLTF_PARAMS)                                                                   \
+  M(GLTF_LAYERED, gltf_layered, CDL_GLTF_LAYERED_PARAMS)                                           \
   M(DIFFUSE, diffuse, 0)
 
 /* cdl_Material.flags */

@@ -18,6 +18,9 @@
 #include "bsdf/dielectric.h"
 #define CDL_SHADE_LIT 0
 #define CDL_SHADE_TRANSMITS 1
+#ifndef CDL_NO_DISPERSION
+#define CDL_SHADE_DISPERSES 1
+#endif
 #define BsdfParams DielectricParams
 #define bsdf_params dielectric_params
 #define bsdf_evaluate dielectric_evaluate
@@ -70,6 +73,39 @@
 #define bsdf_params disney_params
 #define bsdf_evaluate disney_evaluate
 #define bsdf_sample_model disney_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_PLASTIC
+#include "bsdf/plastic.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define BsdfParams PlasticParams
+#define bsdf_params plastic_params
+#define bsdf_evaluate plastic_evaluate
+#define bsdf_sample_model plastic_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_ROUGH_DIELECTRIC
+#include "bsdf/rough_dielectric.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 1
+#ifndef CDL_NO_DISPERSION
+#define CDL_SHADE_DISPERSES 1
+#endif
+#define BsdfParams RoughDielectricParams
+#define bsdf_params rough_dielectric_params
+#define bsdf_evaluate rough_dielectric_evaluate
+#define bsdf_sample_model rough_dielectric_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_GLTF_LAYERED
+#include "bsdf/gltf_layered.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS GLTF_TRANSMITS
+#ifdef CDL_GLTF_CLEARCOAT
+#define CDL_SHADE_COATED 1
+#endif
+#ifdef CDL_GLTF_DISPERSION
+#define CDL_SHADE_DISPERSES 1
+#endif
+#define BsdfParams GltfLayeredParams
+#define bsdf_params gltf_layered_params
+#define bsdf_evaluate gltf_layered_evaluate
+#define bsdf_sample_model gltf_layered_sample
 #else
 #error "CDL_SHADE_MODEL names no material model that scatters light"
 #endif

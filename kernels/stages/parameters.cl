@@ -40,7 +40,7 @@ parameters(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_BvhInstanc
     }
   }
 #endif
-#ifdef CDL_COAT_NORMALS
+#ifdef CDL_GLTF_CLEARCOAT
   vec3 wo = v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i));
   CDL_GLOBAL const cdl_BvhInstance *instance =
       bvh_instances + state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
