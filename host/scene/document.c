@@ -157,7 +157,8 @@ cdl_Status document_open(const cdl_Log *log, const char *path, Document *doc) {
   doc->file.owned = file_read(path, FILE_LIMIT, &doc->file.size, &error);
   doc->file.data = doc->file.owned;
   if (!doc->file.data)
-    return document_fail(doc, "", "IO_ERROR", "it cannot be read: %s.", strerror(error));
+    return document_fail(doc, "", "IO_ERROR", "it cannot be read: %s.",
+                         error == EINVAL ? "not a regular file" : strerror(error));
   doc->folder = canonical_folder(path);
   if (!doc->folder)
     return document_fail(doc, "", "IO_ERROR", "its folder cannot be found: %s.", strerror(errno));

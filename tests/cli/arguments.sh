@@ -119,7 +119,7 @@ render "--checkpoint-every needs --checkpoint" -o x.png --checkpoint-every 5
 refuses 3 "scene.gltf" render scene.gltf -o x.png
 refuses 3 ".: /: IO_ERROR" render . -o x.png
 refuses 3 ".: /: IO_ERROR" info .
-refuses 3 "/dev/null" info /dev/null
+refuses 3 "/dev/null: /: IO_ERROR: it cannot be read: not a regular file" info /dev/null
 refuses 3 ".: not a regular file" compare . .
 refuses 3 ".: not a regular file" merge . -o x.exr
 refuses 5 "/dev/full: exists and is not a regular file" render scene.gltf -o x.png --stats /dev/full
