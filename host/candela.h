@@ -244,6 +244,39 @@ cdl_Status cdl_text_check(const cdl_Log *log, const char *path);
 /* Writes a text to a file, all at once. */
 cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text);
 
+/* One material of a scene on a device, asked about directions. */
+typedef struct cdl_Bsdf cdl_Bsdf;
+
+/* `material` is a name, or an index from 0. Textures count as white: a note says so. CDL_USAGE for a
+ * material that the scene does not have, one that scatters no light (unlit, interface), or while a
+ * session uses the device, which is this one's until cdl_bsdf_free. The scene is not needed
+ * afterwards. */
+cdl_Status cdl_bsdf_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
+                           const char *material, cdl_Bsdf **bsdf);
+
+/* Directions have length 1 and are in the material's own frame: +Z the normal of its front, X the
+ * tangent. wo points to where light goes, wi to where it comes from, both away from the surface. An
+ * opaque material answers alike on both sides; one that light passes takes z < 0 for its inside.
+ *
+ * `pairs`: count x (wo, wi); `values`: count x (f red, green, blue; pdf), f without the cosine, of
+ * radiance, and pdf per solid angle; 0 for delta lobes, and where a direction lies in the surface.
+ * A dispersive material answers with the mean over wavelengths, seen by white light. */
+cdl_Status cdl_bsdf_evaluate(cdl_Bsdf *bsdf, size_t count, const float *pairs, float *values);
+
+/* `wo`: count x 3; `values`: for each of them `samples` x (wi, weight red, green, blue, pdf, delta),
+ * the weight f cos / pdf, pdf 0 and delta 1 for a delta lobe; black: no such path. The numbers are
+ * a render's: low-discrepancy sequences from `seed`, another for each direction, which are numbered
+ * from `first`. Each sample of a dispersive material is of one
+ * wavelength. 1 <= samples <= CDL_MAX_SAMPLES. */
+cdl_Status cdl_bsdf_sample(cdl_Bsdf *bsdf, size_t count, const float *wo, uint32_t first,
+                           uint32_t samples, uint32_t seed, float *values);
+
+/* Polar slices of f |cos| for four directions wo, in the planes along the tangent and across it, as
+ * a picture of linear RGB that cdl_output_check() takes the name of. */
+cdl_Status cdl_bsdf_plot(cdl_Bsdf *bsdf, const char *path);
+
+void cdl_bsdf_free(cdl_Bsdf *bsdf); /* NULL is nothing */
+
 /* How far picture A is from the reference B; over the pixels that are finite in both. */
 typedef struct cdl_Difference {
   int identical; /* every value has the same bits */

@@ -15,6 +15,7 @@ int cli_devices(int argc, char **argv);
 int cli_info(int argc, char **argv);
 int cli_merge(int argc, char **argv);
 int cli_compare(int argc, char **argv);
+int cli_bsdf(int argc, char **argv);
 
 /* Parses a subcommand's arguments. Arguments that the table does not know, or that lack a value,
  * end the program with status 2 and one line that names the closest option; --help prints and ends

@@ -15,6 +15,7 @@ static const struct {
     {"devices", cli_devices, "list OpenCL devices, what they lack, and why one cannot be used"},
     {"info", cli_info, "tell what is in a scene, and what is not supported"},
     {"compare", cli_compare, "error metrics between two pictures"},
+    {"bsdf", cli_bsdf, "evaluate, sample and plot a material, from and to CSV"},
     {"merge", cli_merge, "put partial films together into a picture"},
 };
 enum { COMMANDS = sizeof commands / sizeof *commands };

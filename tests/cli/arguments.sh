@@ -44,7 +44,7 @@ render() { # WORDS ARGUMENT…: a render of a scene that is not there, refused b
 
 says "Usage: candela" --help
 says "candela 0." --version
-for command in render devices info compare merge; do
+for command in render devices info bsdf compare merge; do
   says "Usage: candela $command" $command --help
   refuses 2 "no option '--frobnicate'" $command --frobnicate
 done
