@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""What a profile says must add up: time to the wall clock, launches to the trace, and items and rays
-to what scenes of known light paths take: a mirror or a diffuse sheet that fills the picture."""
+"""What a profile says must add up: time to the wall clock, launches to the trace, and items and
+rays to what scenes of known light paths take: a mirror or a diffuse sheet that fills the picture."""
 import json
 import re
 
@@ -82,7 +82,8 @@ def check_kernels(what, stats, rows, trace):
             continue
         check(at + "the trace has every launch", len(events) == k["launches"] and
               sum(e["args"]["items"] for e in events) == k["items"] and
-              close(1e-6 * sum(e["dur"] for e in events), k["total_s"], absolute=1e-6 * len(events)))
+              close(1e-6 * sum(e["dur"] for e in events), k["total_s"],
+                    absolute=1e-6 * len(events)))
     named = set(rows) - {"all kernels", "wall time", *REST}
     check(what + ": the table has the same kernels", named == set(kernels),
           str(named ^ set(kernels)))
