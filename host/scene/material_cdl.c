@@ -69,7 +69,7 @@ static const Model models[] = {
     {"dielectric", CDL_MODEL_DIELECTRIC, "transmittance", "transmittanceTexture", 1, dielectric},
     {"plastic", CDL_MODEL_PLASTIC, REFLECTANCE, 0.5f, plastic},
     {"oren_nayar", CDL_MODEL_OREN_NAYAR, REFLECTANCE, 0.5f, oren_nayar},
-    {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.8f, disney},
+    {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.5f, disney},
     {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
 

@@ -20,9 +20,10 @@ from support.verdict import check, main, skip
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDER = os.path.abspath(os.path.join(HERE, "../../../shared/references"))
 SPP = {"veach_mis": 1024}  # 512 for all others
-SCENES = ("beer_glass", "cloud_hg", "conductor_gold_ggx", "cornell", "diffuse_furnace",
-          "fog_global", "glass_env", "instances_nonuniform", "mirror_glass_cornell",
-          "punctual_lights", "random_walk_sss", "sun_env", "veach_mis")
+SCENES = ("beer_glass", "cloud_hg", "conductor_copper_beckmann_aniso", "conductor_gold_ggx",
+          "cornell", "diffuse_furnace", "fog_global", "frosted_ggx", "glass_env",
+          "instances_nonuniform", "mirror_glass_cornell", "punctual_lights", "random_walk_sss",
+          "sun_env", "veach_mis")
 
 
 def statistics():
