@@ -32,6 +32,7 @@ static const struct {
     {"KHR_materials_unlit", CDL_EXTENSION_USED},
     {"KHR_materials_variants", CDL_EXTENSION_USED},
     {"KHR_materials_volume", CDL_EXTENSION_USED},
+    {"KHR_materials_volume_scatter", CDL_EXTENSION_USED},
     {"KHR_mesh_quantization", CDL_EXTENSION_USED},
     {"KHR_meshopt_compression", CDL_EXTENSION_USED},
     {"KHR_node_visibility", CDL_EXTENSION_USED},

@@ -162,8 +162,9 @@ cdl_Status build_gltf_layers(Builder *builder, uint32_t index, const json_t *jso
   if (status || !present) return status;
   choose_model(material);
   const json_t *interior = json_get_extension(json, "KHR_materials_volume");
+  const json_t *scatter = json_get_extension(json, "KHR_materials_volume_scatter");
   if (material->transmits && !material->thin)
-    return build_volume(builder, interior, &material->medium);
+    return build_volume(builder, interior, scatter, &material->medium);
   return CDL_OK;
 }
 

@@ -52,18 +52,32 @@ cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *jso
   return add_medium(builder, &medium, index);
 }
 
-/* KHR_materials_volume: attenuationColor is what is left after attenuationDistance, so that
- * sigma_a = -ln(colour) / distance. A black channel is taken as 1e-6: it has no logarithm. */
-cdl_Status build_volume(Builder *builder, const json_t *volume, uint32_t *index) {
+/* Albedo of one collision for the colour that many give (Kulla and Conty 2017). */
+static float single_albedo(float many) {
+  double m = fmin(fmax(many, 0), 1);
+  double s = 4.09712 + 4.20863 * m - sqrt(9.59217 + 41.6808 * m + 17.7126 * m * m);
+  return (float)fmin(fmax(1 - s * s, 0), 1);
+}
+
+/* KHR_materials_volume: attenuationColor is what is left after attenuationDistance, so that the
+ * extinction is -ln(colour) / distance. A black channel is taken as 1e-6: it has no logarithm.
+ * KHR_materials_volume_scatter says which part of the extinction is scattering. */
+cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
+                        uint32_t *index) {
   cdl_SceneMedium medium = {.phase = CDL_PHASE_ISOTROPIC};
-  float colour[3] = {1, 1, 1}, most = 0;
+  float colour[3] = {1, 1, 1}, many[3] = {0, 0, 0}, most = 0;
   double distance = json_get_number(volume, "attenuationDistance", INFINITY);
   *index = CDL_NONE;
   json_get_numbers(volume, "attenuationColor", 3, colour);
+  json_get_numbers(scatter, "multiscatterColor", 3, many);
+  json_get_numbers(scatter, "multiscatterColorFactor", 3, many);
+  medium.g = (float)json_get_number(scatter, "scatterAnisotropy", 0);
+  if (medium.g != 0) medium.phase = CDL_PHASE_HG;
   for (int c = 0; c < 3; c++) {
-    double sigma = -log(fmax(colour[c], 1e-6)) / fmax(distance, 1e-30);
-    medium.absorption[c] = (float)fmin(sigma, 1e30);
-    most = fmaxf(most, medium.absorption[c]);
+    double sigma = fmin(-log(fmax(colour[c], 1e-6)) / fmax(distance, 1e-30), 1e30);
+    medium.scattering[c] = single_albedo(many[c]) * (float)sigma;
+    medium.absorption[c] = (float)sigma - medium.scattering[c];
+    most = fmaxf(most, (float)sigma);
   }
   return most > 0 ? add_medium(builder, &medium, index) : CDL_OK;
 }

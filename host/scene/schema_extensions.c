@@ -84,6 +84,10 @@ static const Member volume[] = {NUMBER("thicknessFactor", 0, 0, INFINITY), INFO(
                                 NUMBER("attenuationDistance", ABOVE, 0, INFINITY),
                                 COLOUR("attenuationColor", 0, 1), END};
 static SCHEMA(schema_volume, "KHR_materials_volume", volume);
+static const Member volume_scatter[] = {COLOUR("multiscatterColor", 0, 1),
+                                        COLOUR("multiscatterColorFactor", 0, 1),
+                                        NUMBER("scatterAnisotropy", ABOVE, -1, 1), END};
+static SCHEMA(schema_volume_scatter, "KHR_materials_volume_scatter", volume_scatter);
 static const Member glossiness[] = {
     NUMBERS("diffuseFactor", 0, 4, 4, 0, 1), INFO("diffuseTexture"),
     COLOUR("specularFactor", 0, 1),          FACTOR("glossinessFactor"),
@@ -224,6 +228,7 @@ const ExtensionPlace schema_extensions[] = {
     {"KHR_materials_variants", &schema_primitive, &schema_mappings},
     {"KHR_materials_variants", &schema_root, &schema_variants},
     {"KHR_materials_volume", &schema_material, &schema_volume},
+    {"KHR_materials_volume_scatter", &schema_material, &schema_volume_scatter},
     {"KHR_meshopt_compression", &schema_buffer, &schema_meshopt_buffer},
     {"KHR_meshopt_compression", &schema_buffer_view, &schema_meshopt_view_khr},
     {"KHR_node_visibility", &schema_node, &schema_visibility},

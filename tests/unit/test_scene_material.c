@@ -104,6 +104,30 @@ static void test_volume(void **state) {
   scene_free(scene);
 }
 
+/* Of the extinction, as much scatters as gives the colour by many collisions: for white, all. */
+static void test_volume_scatter(void **state) {
+  (void)state;
+  struct cdl_Scene *scene = material_scene(
+      "\"KHR_materials_transmission\",\"KHR_materials_volume\",\"KHR_materials_volume_scatter\"",
+      "\"extensions\":{\"KHR_materials_transmission\":{\"transmissionFactor\":1},"
+      "\"KHR_materials_volume\":{\"thicknessFactor\":1,\"attenuationDistance\":2,"
+      "\"attenuationColor\":[0.5,0.5,0.25]},\"KHR_materials_volume_scatter\":{"
+      "\"multiscatterColor\":[1,0,0.5],\"scatterAnisotropy\":-0.5}}");
+  assert_non_null(scene);
+  const cdl_SceneMedium *medium = &scene->media[scene->materials[0].medium];
+  NEAR(medium->scattering[0], log(2) / 2);
+  NEAR(medium->absorption[0], 0);
+  NEAR(medium->scattering[1], 0);
+  NEAR(medium->absorption[1], log(2) / 2);
+  /* The albedo a of a collision returns (1 - s) (1 - 0.139 s) / (1 + 1.17 s) of what comes from all
+   * around, s = sqrt(1 - a) (van de Hulst 1980). */
+  double s = sqrt(medium->absorption[2] / (medium->absorption[2] + medium->scattering[2]));
+  assert_true(fabs((1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s) - 0.5) < 0.005);
+  NEAR(medium->absorption[2] + medium->scattering[2], log(4) / 2);
+  NEAR(medium->g, -0.5);
+  scene_free(scene);
+}
+
 static const cdl_SceneParamTexture *texture_over(const cdl_SceneMaterial *m, uint32_t word) {
   for (uint32_t i = 0; i < m->texture_count; i++)
     if (m->textures[i].param == word) return &m->textures[i];
@@ -407,16 +431,12 @@ static void test_tangents_of_asset(void **state) {
 }
 
 int main(void) {
-  const struct CMUnitTest tests[] = {cmocka_unit_test(test_core),
-                                     cmocka_unit_test(test_volume),
-                                     cmocka_unit_test(test_cdl_models),
-                                     cmocka_unit_test(test_cdl_conductor),
-                                     cmocka_unit_test(test_metals),
-                                     cmocka_unit_test(test_cdl_errors),
-                                     cmocka_unit_test(test_surroundings),
-                                     cmocka_unit_test(test_extensions),
-                                     cmocka_unit_test(test_layers),
-                                     cmocka_unit_test(test_tangents),
-                                     cmocka_unit_test(test_tangents_of_asset)};
+  const struct CMUnitTest tests[] = {
+      cmocka_unit_test(test_core),         cmocka_unit_test(test_volume),
+      cmocka_unit_test(test_cdl_models),   cmocka_unit_test(test_cdl_conductor),
+      cmocka_unit_test(test_metals),       cmocka_unit_test(test_cdl_errors),
+      cmocka_unit_test(test_surroundings), cmocka_unit_test(test_extensions),
+      cmocka_unit_test(test_layers),       cmocka_unit_test(test_volume_scatter),
+      cmocka_unit_test(test_tangents),     cmocka_unit_test(test_tangents_of_asset)};
   return cmocka_run_group_tests(tests, scene_folder_make, scene_folder_remove);
 }
