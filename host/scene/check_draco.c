@@ -37,6 +37,10 @@ static cdl_Status add_attribute(Primitive *p, const char *name, uint32_t id) {
     return document_fail(p->doc, INSIDE(p, "/attributes"), "ARRAY_LENGTH_NOT_IN_LIST",
                          "more than %d attributes are too many.", MOST_ATTRIBUTES);
   const Accessor *a = &p->doc->accessors[index];
+  if (a->columns != 1)
+    return document_fail(p->doc, HERE(p, "attributes"),
+                         "MESH_PRIMITIVE_ATTRIBUTES_ACCESSOR_INVALID_FORMAT",
+                         "%.60s cannot be a matrix.", name);
   if (n && a->count != p->out.points)
     return document_fail(p->doc, HERE(p, "attributes"), "MESH_PRIMITIVE_UNEQUAL_ACCESSOR_COUNT",
                          "%.60s has %zu elements, the one before %zu.", name, a->count,
@@ -47,6 +51,16 @@ static cdl_Status add_attribute(Primitive *p, const char *name, uint32_t id) {
   p->out.points = a->count;
   p->out.attribute_count++;
   return CDL_OK;
+}
+
+/* The decoder writes what check_meshes() would only refuse later. */
+static cdl_Status check_index_format(const Primitive *p) {
+  const Accessor *a = &p->doc->accessors[p->indices];
+  if (a->width == 1 && (a->component == GL_UNSIGNED_BYTE || a->component == GL_UNSIGNED_SHORT ||
+                        a->component == GL_UNSIGNED_INT))
+    return CDL_OK;
+  return document_fail(p->doc, HERE(p, "indices"), "MESH_PRIMITIVE_INDICES_ACCESSOR_INVALID_FORMAT",
+                       "indices must be unsigned scalars.");
 }
 
 static cdl_Status read_extension(Primitive *p) {
@@ -73,10 +87,10 @@ static cdl_Status read_extension(Primitive *p) {
   p->out.most_faces =
       p->mode == MODE_STRIP ? indices->count - (indices->count > 1 ? 2 : 1) : indices->count / 3;
   p->out.attributes = p->attributes;
-  cdl_Status status = CDL_OK;
+  cdl_Status status = check_index_format(p);
   json_object_foreach((json_t *)ids, name, id) {
-    status = add_attribute(p, name, (uint32_t)json_number_value(id));
     if (status) break;
+    status = add_attribute(p, name, (uint32_t)json_number_value(id));
   }
   return status;
 }
@@ -123,6 +137,7 @@ static void fill_accessor(const Primitive *p, uint32_t index, uint8_t **data, si
   a->view = DOCUMENT_NONE;
   a->source = p->view;
   a->lossy = 1;
+  a->sparse_count = 0; /* belongs to what the data take the place of */
   *data = NULL;
 }
 

@@ -172,7 +172,8 @@ uint8_t *allocate(Guard *guard, size_t count, size_t each) {
   return data;
 }
 
-template <typename T> void put_indices(const draco::Mesh &from, uint8_t *to) {
+template <typename T> void put_indices(Guard *guard, const draco::Mesh &from) {
+  uint8_t *to = guard->mesh->indices = allocate(guard, 3 * (size_t)from.num_faces(), sizeof(T));
   for (draco::FaceIndex f(0); f < from.num_faces(); ++f)
     for (int k = 0; k < 3; k++) {
       uint32_t index = from.face(f)[k].value();
@@ -186,20 +187,21 @@ template <typename T> void put_indices(const draco::Mesh &from, uint8_t *to) {
 void read_indices(Guard *guard, const draco::Mesh &from) {
   DracoMesh *mesh = guard->mesh;
   mesh->faces = from.num_faces();
-  mesh->indices = allocate(guard, 3 * mesh->faces, component_size(mesh->index_component));
   switch (mesh->index_component) {
   case GL_UNSIGNED_BYTE:
-    return put_indices<uint8_t>(from, mesh->indices);
+    return put_indices<uint8_t>(guard, from);
   case GL_UNSIGNED_SHORT:
-    return put_indices<uint16_t>(from, mesh->indices);
+    return put_indices<uint16_t>(guard, from);
   default:
-    return put_indices<uint32_t>(from, mesh->indices);
+    return put_indices<uint32_t>(guard, from);
   }
 }
 
 template <typename T>
-void put_values(const draco::Mesh &from, const draco::PointAttribute &attribute, uint8_t *to) {
+void put_values(Guard *guard, const draco::Mesh &from, const draco::PointAttribute &attribute,
+                uint8_t **out) {
   T values[4];
+  uint8_t *to = *out = allocate(guard, from.num_points(), 4 * sizeof(T));
   size_t size = attribute.num_components() * sizeof(T);
   for (draco::PointIndex p(0); p < from.num_points(); ++p) {
     draco::AttributeValueIndex at = attribute.mapped_index(p);
@@ -215,20 +217,19 @@ void read_attribute(Guard *guard, const draco::Mesh &from, DracoAttribute *wante
   if (!attribute) throw Refused{"it lacks an attribute that is declared"};
   if (attribute->num_components() != wanted->width || wanted->width > 4)
     throw Refused{"an attribute has not as many components as its accessor"};
-  wanted->data = allocate(guard, from.num_points(), 4 * component_size(wanted->component));
   switch (wanted->component) {
   case GL_BYTE:
-    return put_values<int8_t>(from, *attribute, wanted->data);
+    return put_values<int8_t>(guard, from, *attribute, &wanted->data);
   case GL_UNSIGNED_BYTE:
-    return put_values<uint8_t>(from, *attribute, wanted->data);
+    return put_values<uint8_t>(guard, from, *attribute, &wanted->data);
   case GL_SHORT:
-    return put_values<int16_t>(from, *attribute, wanted->data);
+    return put_values<int16_t>(guard, from, *attribute, &wanted->data);
   case GL_UNSIGNED_SHORT:
-    return put_values<uint16_t>(from, *attribute, wanted->data);
+    return put_values<uint16_t>(guard, from, *attribute, &wanted->data);
   case GL_FLOAT:
-    return put_values<float>(from, *attribute, wanted->data);
+    return put_values<float>(guard, from, *attribute, &wanted->data);
   default:
-    return put_values<uint32_t>(from, *attribute, wanted->data);
+    return put_values<uint32_t>(guard, from, *attribute, &wanted->data);
   }
 }
 

@@ -157,6 +157,34 @@ static void test_strip(void **state) {
   scene_free(scene);
 }
 
+/* Two primitives may show the same stream through the same accessors: it is decoded once. Accessors
+ * of two different streams are refused; so is an attribute that the primitive does not have. */
+static void test_shared(void **state) {
+  (void)state;
+  static const char *const more[] = {"\"POSITION\":0", "\"POSITION\":0", "\"NORMAL\":0"};
+  size_t size = encode(1, 11);
+  scene_write("mesh.bin", stream, size);
+  for (int i = 0; i < 3; i++) {
+    struct cdl_Scene *scene = scene_from(
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"KHR_draco_mesh_compression\"],"
+        "\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":["
+        "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"
+        "\"KHR_draco_mesh_compression\":{\"bufferView\":0,\"attributes\":{\"POSITION\":0}}}},"
+        "{\"attributes\":{\"POSITION\":0},\"indices\":1,\"extensions\":{"
+        "\"KHR_draco_mesh_compression\":{\"bufferView\":%d,\"attributes\":{%s}}}}]}],"
+        "\"accessors\":[{\"componentType\":5126,\"count\":%d,\"type\":\"VEC3\","
+        "\"min\":[0,0,0],\"max\":[1,1,1]},{\"componentType\":5123,\"count\":%d,"
+        "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu},"
+        "{\"buffer\":0,\"byteLength\":%zu}],\"buffers\":[{\"uri\":\"mesh.bin\","
+        "\"byteLength\":%zu}]}",
+        i == 1, more[i], POINTS, 3 * FACES, size, size, size);
+    assert_int_equal(scene != NULL, i == 0);
+    if (!scene) assert_non_null(strstr(scene_errors, i == 1 ? "another" : "UNRESOLVED_REFERENCE"));
+    if (scene) assert_int_equal(scene->meshes[1].triangle_count, FACES);
+    scene_free(scene);
+  }
+}
+
 static void refused(struct cdl_Scene *scene, const char *words) {
   if (scene || !strstr(scene_errors, words))
     print_message("wanted %s: %s\n", words, scene ? "a scene" : scene_errors);
@@ -172,6 +200,8 @@ static void test_refused(void **state) {
   refused(load(size, POINTS, 3 * FACES - 3, 5123, 4, ""), "more triangles");
   refused(load(size, POINTS, 3 * FACES + 3, 5123, 4, ""), "indices are declared");
   refused(load(size, POINTS, 3 * FACES, 5121, 4, ""), "does not fit");
+  refused(load(size, POINTS, 3 * FACES, 5122, 4, ""), "INDICES_ACCESSOR_INVALID_FORMAT");
+  refused(load(size, POINTS, 3 * FACES, 5126, 4, ""), "INDICES_ACCESSOR_INVALID_FORMAT");
   refused(load(size, POINTS, 3 * FACES, 5123, 6, ""), "/mode: VALUE_NOT_IN_LIST");
   refused(load(size / 2, POINTS, 3 * FACES, 5123, 4, ""), "DRACO_DATA_INVALID");
   refused(load(3, POINTS, 3 * FACES, 5123, 4, ""), "DRACO_DATA_INVALID");
@@ -227,8 +257,9 @@ static int set_up(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_methods), cmocka_unit_test(test_order),
-      cmocka_unit_test(test_strip),   cmocka_unit_test(test_refused),
-      cmocka_unit_test(test_bombs),   cmocka_unit_test(test_metadata_bomb)};
+      cmocka_unit_test(test_methods),      cmocka_unit_test(test_order),
+      cmocka_unit_test(test_strip),        cmocka_unit_test(test_shared),
+      cmocka_unit_test(test_refused),      cmocka_unit_test(test_bombs),
+      cmocka_unit_test(test_metadata_bomb)};
   return cmocka_run_group_tests(tests, set_up, scene_folder_remove);
 }

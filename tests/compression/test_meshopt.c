@@ -318,6 +318,83 @@ static void test_colors(void **state) {
   }
 }
 
+static size_t put_chunk(uint8_t *to, size_t at, uint32_t type, const void *from, size_t size) {
+  uint32_t head[2] = {(uint32_t)(size + 3) & ~3u, type};
+  memcpy(to + at, head, 8);
+  memset(to + at + 8, type == 0x4e4f534a ? ' ' : 0, head[0]);
+  memcpy(to + at + 8, from, size);
+  return at + 8 + head[0];
+}
+
+/* In a GLB the compressed data are the binary chunk; what stands for the plain ones is a buffer
+ * without data. A sparse accessor changes one position. */
+static void test_glb(void **state) {
+  (void)state;
+  static const uint32_t triangle[] = {0, 1, 2};
+  static const struct {
+    uint32_t index;
+    float value[3];
+  } sparse = {1, {5, 6, 7}};
+  char text[4096];
+  static uint8_t file[8192];
+  begin();
+  add_indices(triangle, 3, 2, 1);
+  add_attributes(grid.positions, 3, 12, "NONE");
+  size_t at = bin_size;
+  memcpy(bin + at, &sparse, sizeof sparse);
+  bin_size += sizeof sparse;
+  int length = snprintf(
+      text, sizeof text,
+      "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[\"EXT_meshopt_compression\"],"
+      "\"extensionsRequired\":[\"EXT_meshopt_compression\"],\"scenes\":[{\"nodes\":[0]}],"
+      "\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":1},"
+      "\"indices\":0}]}],\"accessors\":[{\"bufferView\":0,\"componentType\":5123,\"count\":3,"
+      "\"type\":\"SCALAR\"},{\"bufferView\":1,\"componentType\":5126,\"count\":3,"
+      "\"type\":\"VEC3\",\"min\":[0,0,0],\"max\":[5,6,7],\"sparse\":{\"count\":1,"
+      "\"indices\":{\"bufferView\":2,\"componentType\":5125},\"values\":{\"bufferView\":2,"
+      "\"byteOffset\":4}}}],\"bufferViews\":[%s,{\"buffer\":0,\"byteOffset\":%zu,"
+      "\"byteLength\":16}],\"buffers\":[{\"byteLength\":%zu},{\"byteLength\":%zu,"
+      "\"extensions\":{\"EXT_meshopt_compression\":{\"fallback\":true}}}]}",
+      views, at, bin_size, plain_size);
+  assert_true(length > 0 && length < (int)sizeof text);
+  size_t size = put_chunk(file, 12, 0x4e4f534a, text, (size_t)length);
+  size = put_chunk(file, size, 0x004e4942, bin, bin_size);
+  const uint32_t head[3] = {0x46546c67, 2, (uint32_t)size};
+  memcpy(file, head, sizeof head);
+  scene_write("scene.glb", file, size);
+  struct cdl_Scene *scene = must(scene_open("scene.glb", -1));
+  assert_memory_equal(scene->meshes[0].positions, grid.positions[0], 12);
+  assert_memory_equal(scene->meshes[0].positions + 3, sparse.value, 12);
+  assert_memory_equal(scene->meshes[0].positions + 6, grid.positions[2], 12);
+  scene_free(scene);
+}
+
+/* Many views of the same few bytes: what they decode to together is limited. */
+static void test_many(void **state) {
+  (void)state;
+  static uint8_t zeros[4096 * 256], to[1 << 18];
+  static const char head[] = "{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":["
+                             "\"EXT_meshopt_compression\"],\"buffers\":[{\"uri\":\"mesh.bin\","
+                             "\"byteLength\":%zu},{\"byteLength\":1048576}],\"bufferViews\":[";
+  size_t size = meshopt_encodeVertexBuffer(to, sizeof to, zeros, 4096, 256);
+  enum { VIEWS = 2000 };
+  char *text = malloc(VIEWS * 256 + 1024);
+  assert_non_null(text);
+  int at = sprintf(text, head, size);
+  for (int i = 0; i < VIEWS; i++)
+    at += sprintf(text + at,
+                  "%s{\"buffer\":1,\"byteLength\":1048576,\"extensions\":{"
+                  "\"EXT_meshopt_compression\":{\"buffer\":0,\"byteLength\":%zu,\"count\":4096,"
+                  "\"byteStride\":256,\"mode\":\"ATTRIBUTES\"}}}",
+                  i ? "," : "", size);
+  at += sprintf(text + at, "]}");
+  scene_write("mesh.bin", to, size);
+  scene_write("many.gltf", text, (size_t)at);
+  free(text);
+  assert_null(scene_open("many.gltf", -1));
+  assert_non_null(strstr(scene_errors, "DECOMPRESSED_DATA_TOO_LARGE"));
+}
+
 /* What the extension does not allow, and declared sizes that nobody has. */
 static void test_refused(void **state) {
   (void)state;
@@ -361,6 +438,7 @@ int main(void) {
       cmocka_unit_test(test_exact),     cmocka_unit_test(test_filters),
       cmocka_unit_test(test_version_1), cmocka_unit_test(test_version_0),
       cmocka_unit_test(test_colors),    cmocka_unit_test(test_strip_and_instances),
-      cmocka_unit_test(test_names),     cmocka_unit_test(test_refused)};
+      cmocka_unit_test(test_names),     cmocka_unit_test(test_glb),
+      cmocka_unit_test(test_many),      cmocka_unit_test(test_refused)};
   return cmocka_run_group_tests(tests, set_up, scene_folder_remove);
 }
