@@ -1,6 +1,6 @@
 /* meshopt_v1.h: attribute streams of version 1, which the encoder of Debian 12 does not write: made
- * by that of meshoptimizer 0.23 at its highest level from the values that test_meshopt.c computes.
- * They have every control mode, channel mode and rotations. */
+ * by that of meshoptimizer 0.23 at its highest level from the values that test_meshopt_attributes.c
+ * computes. They have every control mode, channel mode and rotations. */
 #ifndef CANDELA_TESTS_MESHOPT_V1_H
 #define CANDELA_TESTS_MESHOPT_V1_H
 
