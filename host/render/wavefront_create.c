@@ -40,7 +40,8 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
-  add_option(options, sizeof options, !f->dispersion, "CDL_NO_DISPERSION");
+  add_option(options, sizeof options, !f->dispersion, "CDL_DISPERSION=0");
+  add_option(options, sizeof options, !f->energy_compensation, "CDL_ENERGY_COMPENSATION=0");
   for (size_t i = 0; i < sizeof gltf_layers / sizeof *gltf_layers; i++)
     add_option(options, sizeof options, (f->gltf_layers & gltf_layers[i].bit) != 0,
                gltf_layers[i].define);

@@ -22,8 +22,9 @@ typedef struct cdl_PackFeatures {
   int opacity;  /* holes and half transparent surfaces among them */
   int media;    /* any medium that is not vacuum */
   int triangle_lights, punctual_lights, environment;
-  uint32_t gltf_layers;        /* CDL_GLTF_LAYER_* */
-  int dispersion;              /* glass that disperses */
+  uint32_t gltf_layers; /* CDL_GLTF_LAYER_* */
+  int dispersion;       /* glass that disperses */
+  int energy_compensation;
   int models[CDL_MODEL_COUNT]; /* 1: used; 2: and emissive */
 } cdl_PackFeatures;
 

@@ -180,6 +180,7 @@ static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
   features->textures |= m->base_texture.texture != CDL_NONE ||
                         m->normal_texture.texture != CDL_NONE ||
                         m->coat_normal_texture.texture != CDL_NONE || m->texture_count > 0;
+  features->energy_compensation |= (m->flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u;
   features->dispersion |=
       (m->model == CDL_MODEL_DIELECTRIC && m->param[CDL_DIELECTRIC_ABBE] > 0) ||
       (m->model == CDL_MODEL_ROUGH_DIELECTRIC && m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0);

@@ -9,6 +9,11 @@
 
 #include "bsdf/bsdf.h"
 
+/* 0 for scenes whose glass does not disperse; results are those with abbe 0. */
+#ifndef CDL_DISPERSION
+#define CDL_DISPERSION 1
+#endif
+
 typedef struct Dispersion {
   vec3 weight; /* one channel's is its 1 / probability, the others' 0; 1 without dispersion */
   float ior;   /* inside over outside, at the path's wavelength */
@@ -44,7 +49,7 @@ CDL_INLINE Dispersion dispersion_choose(BsdfPoint point, float ior, float abbe) 
   int green = t.y > 0.0f && !blue && choice >= t.x;
   float chosen = blue ? t.z : (green ? t.y : t.x);
   float inverse = sum / (chosen > 0.0f ? chosen : 1.0f);
-  int disperses = abbe > 0.0f;
+  int disperses = CDL_DISPERSION && abbe > 0.0f;
   int channel = blue ? 2 : (green ? 1 : 0);
   float wavelength = dispersion_wavelength(channel, point.wavelength);
   float index = dispersion_index(ior, disperses ? abbe : 1.0f, wavelength);

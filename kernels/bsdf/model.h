@@ -18,7 +18,7 @@
 #include "bsdf/dielectric.h"
 #define CDL_SHADE_LIT 0
 #define CDL_SHADE_TRANSMITS 1
-#ifndef CDL_NO_DISPERSION
+#if CDL_DISPERSION
 #define CDL_SHADE_DISPERSES 1
 #endif
 #define BsdfParams DielectricParams
@@ -85,7 +85,7 @@
 #include "bsdf/rough_dielectric.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 1
-#ifndef CDL_NO_DISPERSION
+#if CDL_DISPERSION
 #define CDL_SHADE_DISPERSES 1
 #endif
 #define BsdfParams RoughDielectricParams
