@@ -5,6 +5,7 @@
 
 #include "bsdf/bsdf.h"
 #include "bsdf/clearcoat.h"
+#include "bsdf/dispersion.h"
 #include "bsdf/gltf.h"
 #include "bsdf/iridescence.h"
 #include "bsdf/microfacet.h"
@@ -53,8 +54,10 @@
 #endif
 #define GLTF_TRANSMITS (GLTF_TRANSMISSION | GLTF_DIFFUSE_TRANSMISSION)
 
-/* Refraction by less than this cannot be told from none in single precision. */
+/* What single precision can tell: the least index, and the least width of the refracted lobe,
+ * alpha |eta - 1|, that is not taken for 0. */
 #define GLTF_IOR_MIN 1.001f
+#define GLTF_WIDTH_MIN 2e-5f
 
 typedef struct GltfLayeredParams {
   vec3 base; /* base colour */
@@ -133,25 +136,6 @@ CDL_INLINE void gltf_read_surface(GltfLayeredParams *p, CDL_GLOBAL const uint *p
                                   math_max(math_after(along, alpha), GLTF_ALPHA_MIN), 0, 1);
 }
 
-/* The channel that a dispersed path has, drawn by its throughput, and that channel's index: the
- * whole spread n_F - n_C = (n - 1) / Abbe number between red and blue, dispersion being 20 over
- * Abbe's number. A path dispersed before has but one channel left, which is drawn again. */
-CDL_INLINE float gltf_disperse(GltfLayeredParams *p, BsdfPoint point, float dispersion) {
-  vec3 t = point.throughput;
-  float sum = t.x + t.y + t.z;
-  float pick = point.channel_choice * sum;
-  int red = pick < t.x;
-  int green = !red && pick < t.x + t.y;
-  int blue = !red && !green;
-  float own = red ? t.x : (green ? t.y : t.z);
-  float weight = own > 0.0f ? sum / own : 0.0f;
-  int disperses = dispersion > 0.0f;
-  vec3 one = v3(red ? weight : 0.0f, green ? weight : 0.0f, blue ? weight : 0.0f);
-  p->channels = v3_select(disperses, one, v3_all(1.0f));
-  float half_spread = 0.025f * dispersion * (p->ior - 1.0f);
-  return p->ior + (red ? -half_spread : (blue ? half_spread : 0.0f));
-}
-
 CDL_INLINE void gltf_read_transmission(GltfLayeredParams *p, BsdfPoint point,
                                        CDL_GLOBAL const uint *params, size_t stride, size_t i) {
   float thickness =
@@ -160,10 +144,14 @@ CDL_INLINE void gltf_read_transmission(GltfLayeredParams *p, BsdfPoint point,
       GLTF_DISPERSION ? param_float(params, CDL_GLTF_LAYERED_DISPERSION, stride, i) : 0.0f;
   p->solid = thickness > 0.0f;
   p->outside = p->solid ? point.front : 1;
-  p->channels = v3_all(1.0f);
-  float ior = GLTF_DISPERSION ? gltf_disperse(p, point, p->solid ? dispersion : 0.0f) : p->ior;
-  ior = math_max(ior, GLTF_IOR_MIN);
+  int disperses = p->solid && dispersion > 0.0f;
+  Dispersion d = {v3_all(1.0f), p->ior, 0.0f};
+  if (GLTF_DISPERSION) d = dispersion_choose(point, p->ior, disperses ? 20.0f / dispersion : 0.0f);
+  float ior = math_max(d.ior, GLTF_IOR_MIN);
+  float width = math_max(p->surface.alpha_x, p->surface.alpha_y) * (ior - 1.0f) / ior;
+  p->channels = d.weight;
   p->eta = p->solid ? (point.front ? ior : 1.0f / ior) : 1.0f;
+  p->smooth = p->smooth || (p->solid && width < GLTF_WIDTH_MIN);
   p->transmission =
       gltf_factor(GLTF_TRANSMISSION, params, CDL_GLTF_LAYERED_TRANSMISSION, stride, i);
   p->diffuse_transmission = gltf_factor(GLTF_DIFFUSE_TRANSMISSION, params,
@@ -210,9 +198,9 @@ CDL_INLINE GltfLayeredParams gltf_layered_params(BsdfPoint point, CDL_GLOBAL con
 
 /* What facets at one angle do with light. */
 typedef struct GltfFacet {
-  vec3 specular;     /* reflected */
-  float diffuse;     /* left for what is scattered below, */
-  float transmitted; /* and for what passes: equal unless inside of a volume */
+  vec3 specular; /* reflected */
+  float rest;    /* what enters the dielectric */
+  float pad;
 } GltfFacet;
 
 CDL_INLINE vec3 gltf_mix(vec3 a, vec3 b, float t) {
@@ -232,31 +220,22 @@ CDL_INLINE vec3 gltf_fresnel_at(GltfLayeredParams p, ThinFilm film, vec3 f0, flo
   return GLTF_IRIDESCENCE ? gltf_mix(fresnel, film_reflectance(film, f0), p.film) : fresnel;
 }
 
-/* The dielectric seen from inside of a volume at cos_h: by the cosine beyond, where Schlick's
- * formula is the one from outside, and 1 under total reflection. */
-CDL_INLINE vec3 gltf_fresnel_beyond(GltfLayeredParams p, float cos_h) {
-  float squared = fma(cos_h, cos_h, (p.eta - 1.0f) * (p.eta + 1.0f));
-  float cos_t = math_min(math_safe_sqrt(squared) / p.eta, 1.0f);
-  vec3 fresnel = gltf_fresnel_at(p, gltf_film(p, cos_t), p.f0, p.f90, cos_t);
-  return v3_select(squared > 0.0f, fresnel, v3_all(1.0f));
-}
-
-/* Facets at cos_h to wo. Inside of a volume, what is scattered takes the same part as outside. */
+/* Facets at cos_h to wo. Inside of what transmits, the cosine beyond counts, where Schlick's
+ * formula is the one from outside, and total reflection. */
 CDL_INLINE GltfFacet gltf_facet(GltfLayeredParams p, float cos_h) {
   GltfFacet facet;
-  ThinFilm film = gltf_film(p, cos_h);
-  vec3 dielectric = gltf_fresnel_at(p, film, p.f0, p.f90, cos_h);
-  vec3 metal = gltf_fresnel_at(p, film, p.base, 1.0f, math_after(dielectric.z, cos_h));
-  vec3 beyond = dielectric;
-  if (GLTF_TRANSMISSION) {
-    beyond = gltf_fresnel_beyond(p, math_after(metal.z, cos_h));
-    beyond = v3_select(p.outside, dielectric, beyond);
-  }
-  vec3 specular = GLTF_TRANSMISSION ? gltf_mix(dielectric, beyond, p.transmission) : dielectric;
-  float rest = 1.0f - p.metallic;
-  facet.diffuse = rest * (1.0f - v3_max(dielectric));
-  facet.transmitted = rest * (1.0f - v3_max(beyond));
-  facet.specular = gltf_mix(specular, metal, p.metallic);
+  int inside = GLTF_TRANSMISSION && !p.outside && p.transmission > 0.0f;
+  float squared = fma(cos_h, cos_h, (p.eta - 1.0f) * (p.eta + 1.0f));
+  float cos_t = math_min(math_safe_sqrt(squared) / p.eta, 1.0f);
+  int total = inside && squared <= 0.0f;
+  float cosine = inside ? cos_t : cos_h;
+  ThinFilm film = gltf_film(p, cosine);
+  vec3 dielectric = gltf_fresnel_at(p, film, p.f0, p.f90, cosine);
+  dielectric = v3_select(total, v3_all(1.0f), dielectric);
+  vec3 metal = gltf_fresnel_at(p, film, p.base, 1.0f, math_after(dielectric.z, cosine));
+  facet.specular = gltf_mix(dielectric, metal, p.metallic);
+  facet.rest = (1.0f - p.metallic) * (1.0f - v3_max(dielectric));
+  facet.pad = 0.0f;
   return facet;
 }
 

@@ -6,7 +6,8 @@
  * All phases being multiples of pi, they only change the sign of odd orders; so the spectral
  * integrals are made once for an angle and serve every base. The sign is taken by channel of the
  * result (the extension's listing takes it by channel of XYZ, which is the same unless the film's
- * index lies between those of the base's channels). The result is kept within [0,1]. */
+ * index lies between those of the base's channels). Its least product of reflectances, 1e-5, is
+ * left out, which would be 0.009 of reflectance. The result is kept within [0,1]. */
 #ifndef CDL_BSDF_IRIDESCENCE_H
 #define CDL_BSDF_IRIDESCENCE_H
 
@@ -68,7 +69,7 @@ CDL_INLINE float film_channel(ThinFilm film, float f0, float first, float second
   float inner = fresnel_schlick(math_sqr((ior - film.ior) / (ior + film.ior)), film.cos_2);
   float sign = (ior < film.ior) == (film.ior < 1.0f) ? -1.0f : 1.0f;
   float passed = 1.0f - film.reflectance;
-  float product = math_clamp(film.reflectance * inner, 1e-5f, 0.9999f);
+  float product = math_min(film.reflectance * inner, 0.9999f);
   float rest = passed * passed * inner / (1.0f - product);
   float order = (rest - passed) * sqrt(product);
   float waves = fma(order * sign, first, order * sqrt(product) * second);

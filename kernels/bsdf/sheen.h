@@ -5,7 +5,7 @@
  * What sheen reflects is taken from the layers below by albedo scaling. That needs the albedo
  * E(cos, roughness) of white sheen, which is fitted here: sqrt(E) is a polynomial in the fourth
  * root of the cosine and the square root of roughness, fitted to quadrature and raised a little, so
- * that it is above E by 0 to 0.003 (0 to 0.6 % where E > 1).
+ * that it is above E by 0 to 0.0052 (relative where E > 1).
  *
  * At grazing angles and roughness below 0.3 the formula itself returns more than it gets (1.9 times
  * at cos 0.01 and roughness 0.1). There the lobe is divided by the greater of E(wo) and E(wi),
@@ -37,7 +37,8 @@ CDL_INLINE float sheen_row(float y, float c0, float c1, float c2, float c3, floa
 
 /* The exponent of Lambda, x in [0, 1/2] (Estevez and Kulla, eq. 3 and table 1). */
 CDL_INLINE float sheen_exponent(Sheen s, float x) {
-  return s.a / fma(s.b, math_pow(x, s.c), 1.0f) + fma(s.d, x, s.e);
+  float power = math_exp2(s.c * math_log2(math_max(x, 1e-9f)));
+  return s.a / fma(s.b, power, 1.0f) + fma(s.d, x, s.e);
 }
 
 CDL_INLINE Sheen sheen_masking(Sheen s, float alpha) {
@@ -100,7 +101,8 @@ CDL_INLINE float sheen_value(Sheen s, vec3 wo, vec3 wi) {
   vec3 sum = v3_add(wo, wi);
   float length2 = math_max(v3_length2(sum), 1e-12f);
   float sin2 = math_clamp(fma(sum.x, sum.x, sum.y * sum.y) / length2, 0.0f, 1.0f);
-  float d = (2.0f + s.inverse) * CDL_INV_2PI * math_pow(sin2, 0.5f * s.inverse);
+  float power = math_exp2(0.5f * s.inverse * math_log2(math_max(sin2, 1e-30f)));
+  float d = (2.0f + s.inverse) * CDL_INV_2PI * power;
   float lambda_o = sheen_lambda(s, math_min(math_after(d, cos_o), 1.0f));
   float lambda_i = sheen_lambda(s, math_min(math_after(lambda_o, cos_i), 1.0f));
   return d / ((1.0f + lambda_o + lambda_i) * 4.0f * cos_i * cos_o);
