@@ -59,6 +59,7 @@ static cdl_Status sort(cdl_Wavefront *w, cdl_WaveCounts *counts) {
   for (uint32_t q = 0; q < CDL_QUEUE_COUNT; q++) counts->bounce_rays += w->ranges[q].count;
   counts->shadow_rays += w->ranges[CDL_QUEUE_SHADOWS].count;
   w->wave.live = w->ranges[CDL_QUEUE_ENDED].begin;
+  if (w->wave.live == CDL_QUEUE_ALIGNMENT) w->wave.live = 0; /* pads alone */
   if (!w->wave.live) return CDL_OK;
   wavefront_swap_paths(w);
   return run_all(w, CDL_KERNEL_queue_move, w->wave.live);

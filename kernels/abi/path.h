@@ -56,9 +56,11 @@ enum {
 #define CDL_QUEUE_LIVE 0u                 /* written by shading: to be traced */
 #define CDL_QUEUE_DEAD 0xffffffffu
 
-/* Queues begin at multiples of this and are padded to it, so that work-groups are full. */
+/* Queues begin at multiples of this and are padded to it, so that work-groups are full. The first
+ * begins after as many pads, because PoCL compiles a kernel anew for launches with an offset of 0.
+ */
 #define CDL_QUEUE_ALIGNMENT 64u
-#define CDL_QUEUE_PADDING (CDL_QUEUE_COUNT * CDL_QUEUE_ALIGNMENT)
+#define CDL_QUEUE_PADDING ((CDL_QUEUE_COUNT + 1u) * CDL_QUEUE_ALIGNMENT)
 
 /* Paths that one work-item of the counting kernels looks at. */
 #define CDL_QUEUE_CHUNK 256u

@@ -10,6 +10,9 @@ __kernel void queue_scan(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL uint *
   if (get_global_id(0) != 0) return;
   uint chunks = (wave->live + CDL_QUEUE_CHUNK - 1u) / CDL_QUEUE_CHUNK;
   uint place = 0u;
+  for (; place < CDL_QUEUE_ALIGNMENT; place++)
+    sources[place] =
+        CDL_SOURCE_PAD | (wave->path_count + CDL_QUEUE_COUNT * CDL_QUEUE_ALIGNMENT + place);
   for (uint q = 0; q < CDL_QUEUE_COUNT; q++) {
     ranges[q].begin = place;
     for (uint chunk = 0; chunk < chunks; chunk++) {
