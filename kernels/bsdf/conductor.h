@@ -1,7 +1,7 @@
 /* conductor.h: a metal, smooth or rough: exact Fresnel of a complex index on each facet.
  *
- * Where energy compensation is on, light that goes to and fro between facets comes back as a diffuse
- * lobe, coloured by its reflections (Kulla and Conty 2017). */
+ * Where energy compensation is on, light that goes to and fro between facets comes back as a
+ * diffuse lobe, coloured by its reflections (Kulla and Conty 2017). */
 #ifndef CDL_BSDF_CONDUCTOR_H
 #define CDL_BSDF_CONDUCTOR_H
 
@@ -12,8 +12,8 @@
 
 typedef struct ConductorParams {
   Microfacets facets;
-  vec3 eta, k; /* complex index, per channel */
-  vec3 diffuse; /* colour of the diffuse lobe over the mean of what is missing */
+  vec3 eta, k;       /* complex index, per channel */
+  vec3 diffuse;      /* colour of the diffuse lobe over the mean of what is missing */
   float compensated; /* 1, else 0 */
 } ConductorParams;
 

@@ -41,6 +41,14 @@ CDL_INLINE DielectricFresnel fresnel_dielectric(float cos_i, float eta) {
   return f;
 }
 
+/* The same reflectance from both cosines, where both are known: accurate near total reflection, and
+ * the same seen from either side. */
+CDL_INLINE float fresnel_dielectric_between(float cos_i, float cos_t, float eta) {
+  float s = (cos_i - eta * cos_t) / math_max(fma(eta, cos_t, cos_i), 1e-30f);
+  float p = fma(eta, cos_i, -cos_t) / math_max(fma(eta, cos_i, cos_t), 1e-30f);
+  return math_min(0.5f * fma(s, s, p * p), 1.0f);
+}
+
 /* w refracted through the boundary with normal n, dot(w, n) = cos_i > 0; cos_t as above.
  * Meaningless under total internal reflection, but finite. */
 CDL_INLINE vec3 fresnel_refract(vec3 w, vec3 n, float cos_i, float cos_t, float eta) {

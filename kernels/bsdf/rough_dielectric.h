@@ -5,8 +5,8 @@
  * on its way into the denser medium. Masking correlated by height is 1 / (1 + Lambda(wo) +
  * Lambda(wi)) on both sides. A thin sheet transmits the lobe that it reflects, mirrored through
  * its plane. What goes to and fro between facets comes back as a diffuse lobe on either side
- * (Kulla and Conty 2017) where energy compensation is on. Facets too smooth, or an index too near 1,
- * for directions in single precision are dielectric.h's delta lobes. */
+ * (Kulla and Conty 2017) where energy compensation is on. Facets too smooth, or an index too near
+ * 1, for directions in single precision are dielectric.h's delta lobes. */
 #ifndef CDL_BSDF_ROUGH_DIELECTRIC_H
 #define CDL_BSDF_ROUGH_DIELECTRIC_H
 
@@ -32,13 +32,12 @@ CDL_INLINE int rough_dielectric_is_smooth(Microfacets m, float eta, int thin) {
   return m.smooth || width < ROUGH_DIELECTRIC_WIDTH_MIN;
 }
 
-CDL_INLINE RoughDielectricParams rough_dielectric_make(BsdfPoint point, float alpha_x, float alpha_y,
-                                                       float ior, float abbe) {
+CDL_INLINE RoughDielectricParams rough_dielectric_make(BsdfPoint point, float alpha_x,
+                                                       float alpha_y, float ior, float abbe) {
   RoughDielectricParams p;
   p.glass = dielectric_make(point, ior, abbe);
-  p.facets =
-      microfacet_surface(alpha_x, alpha_y, (point.flags & CDL_MATERIAL_BECKMANN) != 0u,
-                         (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
+  p.facets = microfacet_surface(alpha_x, alpha_y, (point.flags & CDL_MATERIAL_BECKMANN) != 0u,
+                                (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
   p.smooth = rough_dielectric_is_smooth(p.facets, p.glass.eta, p.glass.thin);
   int compensated = (point.flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u && !p.smooth;
   p.energy = energy_glass(p.facets, p.glass.eta, p.glass.thin, compensated);
@@ -50,8 +49,7 @@ CDL_INLINE RoughDielectricParams rough_dielectric_make(BsdfPoint point, float al
 CDL_INLINE RoughDielectricParams rough_dielectric_params(BsdfPoint point,
                                                          CDL_GLOBAL const uint *params,
                                                          size_t stride, size_t i) {
-  return rough_dielectric_make(point,
-                               param_float(params, CDL_ROUGH_DIELECTRIC_ALPHA, stride, i),
+  return rough_dielectric_make(point, param_float(params, CDL_ROUGH_DIELECTRIC_ALPHA, stride, i),
                                param_float(params, CDL_ROUGH_DIELECTRIC_ALPHA + 1u, stride, i),
                                param_float(params, CDL_ROUGH_DIELECTRIC_IOR, stride, i),
                                param_float(params, CDL_ROUGH_DIELECTRIC_ABBE, stride, i));
@@ -93,8 +91,10 @@ CDL_INLINE RoughDielectricLobe rough_dielectric_lobe(RoughDielectricParams p, ve
   float lambda_i = microfacet_lambda(m, up);
   float correlated = 1.0f / (1.0f + lambda_o + lambda_i);
   float g = m.separable ? g1 / (1.0f + math_after(correlated, lambda_i)) : correlated;
-  float reflectance =
-      fresnel_dielectric(math_clamp(math_after(g, wo_h), 0.0f, 1.0f), eta).reflectance;
+  float cos_h = math_saturate(math_after(g, wo_h));
+  DielectricFresnel fresnel = fresnel_dielectric(cos_h, eta);
+  float between = fresnel_dielectric_between(cos_h, math_after(fresnel.reflectance, wi_h), eta);
+  float reflectance = through ? between : fresnel.reflectance;
   reflectance = p.glass.thin ? dielectric_sheet(reflectance) : reflectance;
   float choice = rough_dielectric_choice(reflectance, p.tint);
   /* solid angle of h over that of wi, times wo.h, without eta^2 where refracted */
@@ -125,8 +125,8 @@ CDL_INLINE BsdfValue rough_dielectric_value(RoughDielectricParams p, vec3 wo, ve
   vec3 up = v3(wi.x, wi.y, math_after(lobe.pdf, math_abs(wi.z)));
   float missing = energy_glass_missing(p.energy, p.facets, up, lobe.through ? 1.0f / eta : eta);
   float reflected = p.energy.reflected;
-  float side = below ? (1.0f - reflected) * scale / p.energy.mean_beyond
-                     : reflected / p.energy.mean_here;
+  float side =
+      below ? (1.0f - reflected) * scale / p.energy.mean_beyond : reflected / p.energy.mean_here;
   float diffuse = share * missing * side * cosine_pdf;
   float choice = rough_dielectric_choice(reflected, p.tint);
   float diffuse_pdf = (below ? 1.0f - choice : choice) * cosine_pdf;
