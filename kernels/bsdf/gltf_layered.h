@@ -178,7 +178,7 @@ CDL_INLINE BsdfValue gltf_cover_value(GltfLayeredParams p, GltfChoice choice, ve
     vec3 up = gltf_fold(wi);
     float sheen = covered * cover.coat * sheen_value(p.sheen, wo, up) * up.z / cover.divisor;
     value.f_cos = v3_madd(value.f_cos, sheen, p.sheen_color);
-    value.pdf = fma(covered * choice.sheen, sheen_pdf(p.sheen, wo, up), value.pdf);
+    value.pdf = fma(covered * choice.sheen, SHEEN_PDF, value.pdf);
   }
   if (GLTF_CLEARCOAT) {
     vec3 coat_o = frame_to_local(frame, wo);
@@ -329,11 +329,7 @@ CDL_INLINE BsdfSample gltf_layered_sample(GltfLayeredParams p, vec3 wo, float u,
   wi.z = through ? -wi.z : wi.z;
   wi = v3_select(specular, s.wi, wi);
   int valid = specular ? s.valid : 1;
-  if (GLTF_SHEEN) {
-    vec3 back = sheen_sample(p.sheen, wo, u, v, after_coat * bsdf_reciprocal(choice.sheen));
-    wi = v3_select(fibre, back, wi);
-    valid = fibre ? back.z > 0.0f : valid;
-  }
+  if (GLTF_SHEEN) wi = v3_select(fibre, sheen_sample(u, v), wi);
   BsdfValue value = gltf_layered_value(p, choice, wo, wi);
   vec3 weight = v3_scale(value.f_cos, bsdf_reciprocal(value.pdf));
   int delta = GLTF_TRANSMISSION && p.smooth && facets && s.transmitted;

@@ -15,8 +15,6 @@
 #define CDL_BSDF_SHEEN_H
 
 #include "bsdf/bsdf.h"
-#include "bsdf/fresnel.h"
-#include "lib/sampling.h"
 
 #define SHEEN_ROUGHNESS_MIN 0.1f
 #define SHEEN_ROOT_MIN 0.316227766f /* its square root */
@@ -25,7 +23,6 @@ typedef struct Sheen {
   float inverse;       /* 1 / alpha, alpha = roughness^2 */
   float a, b, c, d, e; /* of the masking's fit */
   float middle;        /* twice its exponent at cos 1/2 */
-  float width;         /* of sampled cosines of half vectors */
   float albedo_0, albedo_1, albedo_2, albedo_3, albedo_4, albedo_5, albedo_6, albedo_7, albedo_8;
 } Sheen;
 
@@ -57,7 +54,6 @@ CDL_INLINE Sheen sheen_make(float roughness) {
   float r = math_clamp(roughness, SHEEN_ROUGHNESS_MIN, 1.0f);
   float y = fma(sqrt(r) - SHEEN_ROOT_MIN, 2.0f / (1.0f - SHEEN_ROOT_MIN), -1.0f);
   s.inverse = 1.0f / (r * r);
-  s.width = r;
   s.albedo_0 = sheen_row(y, 0.7967228f, 0.02363783f, 0.2037381f, -0.04358416f, -0.06678371f,
                          0.000281242f, -0.02183812f);
   s.albedo_1 = sheen_row(y, -0.4165387f, 0.3035953f, -0.3633505f, 0.1765232f, -0.1490982f,
@@ -108,31 +104,16 @@ CDL_INLINE float sheen_value(Sheen s, vec3 wo, vec3 wi) {
   return d / ((1.0f + lambda_o + lambda_i) * 4.0f * cos_i * cos_o);
 }
 
-/* Half of the directions are drawn uniformly, half by reflection on a half vector whose cosine c
- * has density s (1 + s) / (c + s)^2 and that is turned about the normal by half a turn where wo is
- * behind it. */
-CDL_INLINE float sheen_pdf(Sheen s, vec3 wo, vec3 wi) {
-  vec3 sum = v3_add(wo, wi);
-  float length = math_max(v3_length(sum), 1e-6f);
-  float c = sum.z / length;
-  float cos_h = 0.5f * length;
-  float turned = fma(2.0f * wo.z, c, -cos_h); /* wo times the half vector turned back */
-  float ratio = s.width * (1.0f + s.width) / math_sqr(c + s.width);
-  float density = ratio * (turned < 0.0f ? 2.0f : 1.0f) * CDL_INV_2PI;
-  return fma(0.5f * density, 0.25f / cos_h, 0.5f * CDL_INV_2PI);
-}
+/* Directions are drawn uniformly, as Estevez and Kulla do: the relative deviation of the weight is
+ * 0.2 to 1.5 from roughness 0.3 on and 2 to 4 at 0.1; drawn by the cosine it is 1 to 4 times that.
+ */
+#define SHEEN_PDF CDL_INV_2PI
 
-/* w in [0,1); may be below the horizon, where the lobe is 0. */
-CDL_INLINE vec3 sheen_sample(Sheen s, vec3 wo, float u, float v, float w) {
+CDL_INLINE vec3 sheen_sample(float u, float v) {
   float cosine, sine;
-  int uniform = w < 0.5f;
-  float z = uniform ? u : u * s.width / (1.0f + s.width - u);
-  float radius = math_safe_sqrt((1.0f - z) * (1.0f + z));
+  float radius = math_safe_sqrt((1.0f - u) * (1.0f + u));
   math_sincos_2pi(v, &sine, &cosine);
-  vec3 h = v3(radius * cosine, radius * sine, z);
-  float turn = v3_dot(h, wo) < 0.0f ? -1.0f : 1.0f;
-  vec3 facing = v3(turn * h.x, turn * h.y, h.z);
-  return v3_select(uniform, h, fresnel_reflect(wo, facing));
+  return v3(radius * cosine, radius * sine, math_max(u, 1e-6f));
 }
 
 #endif
