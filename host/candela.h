@@ -49,6 +49,7 @@ typedef struct cdl_SceneOptions {
   double time;           /* animation time, s; negative: the pose at rest */
   const char *animation; /* name or index; NULL: all that do not move the same things */
   const char *variant;   /* of KHR_materials_variants, by name; NULL: the default materials */
+  const char *camera;    /* name or index of the one whose shutter counts; NULL: the first */
 } cdl_SceneOptions;
 
 /* At rest, in the default materials. */

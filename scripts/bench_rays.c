@@ -201,7 +201,7 @@ typedef struct Traced {
 } Traced;
 
 static void traced_open(Traced *traced, cdl_Device *device, const Mesh *mesh, int width) {
-  cdl_BvhPart part = {mesh->positions, mesh->indices, mesh->triangles, 0};
+  cdl_BvhPart part = {mesh->positions, mesh->indices, mesh->triangles, 0, 0, 0};
   cdl_BvhMesh one = {&part, 1};
   cdl_BvhPlacement placement = {.to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0},
                                 .mask = CDL_MASK_ALL};

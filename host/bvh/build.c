@@ -6,6 +6,7 @@
 
 #include "bvh/instances.h"
 #include "bvh/layout.h"
+#include "bvh/motion.h"
 #include "bvh/statistics.h"
 #include "core/clock.h"
 #include "core/log.h"
@@ -210,6 +211,8 @@ cdl_Status bvh_build(const cdl_Log *log, const cdl_BvhMesh *meshes, uint32_t mes
   status = build_top(&b, placements, placement_count);
   if (status) goto done;
   status = write_layout(&b);
+  if (!status && motion_append(meshes, mesh_count, bvh))
+    status = no_memory(&b, "triangles that move", bvh->triangle_bytes);
 done:
   build_close(&b);
   bvh->statistics.seconds = clock_now() - start;

@@ -17,12 +17,15 @@ extern "C" {
 #endif
 
 /* Triangles with positions of their own: 3 floats a vertex, 3 indices a triangle, in range. The
- * first one has the global number first_primitive, the others follow. */
+ * first one has the global number first_primitive, the others follow. What moves has positions at
+ * `keys` times, key_stride floats apart; all parts that move have as many. */
 typedef struct cdl_BvhPart {
   const float *positions;
   const uint32_t *indices;
   uint32_t triangle_count;
   uint32_t first_primitive;
+  uint32_t keys; /* below 2: it stands still */
+  size_t key_stride;
 } cdl_BvhPart;
 
 /* One tree is built over all parts of a mesh. */

@@ -16,7 +16,8 @@ typedef struct Source {
 int source_open(Source *source, const cdl_BvhMesh *mesh);
 void source_close(Source *source);
 
-/* The nine coordinates of triangle `number`; returns its global number. */
+/* The nine coordinates of triangle `number`, at the first key of its motion; returns its global
+ * number. */
 uint32_t source_triangle(const Source *source, uint32_t number, float v[9]);
 
 /* Makes a fragment of every triangle that can be hit. Left out are those with corners that are not

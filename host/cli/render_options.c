@@ -145,7 +145,7 @@ static int parse_picture(int key, const char *value, RenderOptions *options) {
     parse_size(value, s);
     break;
   case KEY_CAMERA:
-    s->camera = value;
+    s->camera = options->what.camera = value;
     break;
   case KEY_CROP:
     parse_crop(value, s);

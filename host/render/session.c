@@ -65,7 +65,10 @@ static cdl_Params make_params(const cdl_Session *session, const cdl_SceneCamera 
                        .top_root = pack->bvh.root,
                        .scene_medium = pack->scene_medium,
                        .scene_radius = (float)pack_scene_radius(pack),
-                       .pass_limit = PASS_LIMIT};
+                       .pass_limit = PASS_LIMIT,
+                       .motion_keys = pack->motion_keys,
+                       .camera_keys =
+                           pack->camera_keys + 12 * pack->motion_keys * session->camera_index};
   camera_params(camera, s->width, s->height, &params.camera);
   for (int i = 0; i < 3; i++)
     params.scene_center[i] = b[i] <= b[i + 3] ? 0.5f * b[i] + 0.5f * b[i + 3] : 0.0f;

@@ -40,6 +40,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
+  add_option(options, sizeof options, f->motion, "CDL_MOTION");
   add_option(options, sizeof options, !f->dispersion, "CDL_DISPERSION=0");
   add_option(options, sizeof options, !f->energy_compensation, "CDL_ENERGY_COMPENSATION=0");
   for (size_t i = 0; i < sizeof gltf_layers / sizeof *gltf_layers; i++)
@@ -249,8 +250,8 @@ cdl_Status wavefront_create(cdl_Device *device, const cdl_Pack *pack, const cdl_
   w->features = pack->features;
   w->has_lights = pack->light_count > 0;
   w->paths = paths;
-  w->wide_camera =
-      pack->features.media && (params->camera.orthographic || params->camera.lens_radius > 0.0f);
+  w->wide_camera = pack->features.media && (params->camera.orthographic || pack->features.motion ||
+                                            params->camera.lens_radius > 0.0f);
   cdl_Status status = upload_scene(w, pack);
   if (!status) status = make_film_channels(w, film);
   if (!status) status = make_wave_buffers(w);

@@ -14,6 +14,7 @@ typedef struct Builder {
   Document *doc;
   struct cdl_Scene *scene;
   uint32_t variant;        /* of KHR_materials_variants, or CDL_NONE */
+  int shapes_only;         /* what moves alone: no images, no environment */
   uint32_t *texture_map;   /* glTF texture -> scene texture, or CDL_NONE */
   uint32_t *image_map;     /* glTF image -> scene image, or CDL_NONE */
   uint32_t *image_sources; /* scene image -> glTF image, or CDL_NONE: not of glTF */

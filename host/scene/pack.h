@@ -20,6 +20,7 @@ typedef struct cdl_PackFeatures {
   int textures, float_textures, emission_textures, vertex_colors;
   int passable; /* surfaces that light may pass straight through */
   int opacity;  /* holes and half transparent surfaces among them */
+  int motion;   /* things or cameras move while the shutter is open */
   int media;    /* any medium that is not vacuum */
   int triangle_lights, punctual_lights, environment;
   uint32_t gltf_layers; /* CDL_GLTF_LAYER_* */
@@ -45,6 +46,8 @@ typedef struct cdl_Pack {
   size_t triangle_count, shape_count, attribute_count, material_count, param_texture_count,
       texture_count, texel_count, light_count, environment_count, cell_count, medium_count;
   uint32_t scene_medium;
+  uint32_t motion_keys; /* times at which moving things are known; below 2: nothing moves */
+  uint32_t camera_keys; /* where in the attributes the cameras' matrices at those times begin */
   uint32_t *mesh_shapes; /* of each mesh of the trees that is placed by instances: its shape */
   cdl_EnvironmentParams environment_params;
   cdl_PackFeatures features;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "core/log.h"
+#include "scene/motion.h"
 #include "scene/pack_parts.h"
 
 /* The two trees of what stands in the scene once. */
@@ -22,6 +23,8 @@ typedef struct Geometry {
   cdl_BvhPart *baked[BAKED_COUNT];
   uint32_t baked_count[BAKED_COUNT];
   uint32_t mesh_count, placement_count;
+  uint32_t keys;  /* of the motion; 1: everything stands still */
+  uint8_t *moves; /* per instance */
 } Geometry;
 
 static int material_passable(const cdl_Material *m) {
@@ -55,26 +58,30 @@ static void bake_normal(const float m[12], const float *n, float *out) {
   normalize(out);
 }
 
-/* Appends `width` floats a vertex; CDL_NONE where the mesh has none. */
-static uint32_t append(Geometry *g, const cdl_SceneMesh *mesh, const float *from, uint32_t width) {
+/* Appends `width` floats a vertex, with room for `keys` times as many; CDL_NONE where the mesh has
+ * none. */
+static uint32_t append(Geometry *g, const cdl_SceneMesh *mesh, const float *from, uint32_t width,
+                       uint32_t keys) {
   if (!from) return CDL_NONE;
   size_t at = g->pack->attribute_count, count = (size_t)mesh->vertex_count * width;
   memcpy(g->pack->attributes + at, from, count * sizeof *from);
-  g->pack->attribute_count += count;
+  g->pack->attribute_count += count * keys;
   return (uint32_t)at;
 }
 
+/* Where the mesh's vertices are in the world at a key of the motion. */
 static void bake_attributes(const cdl_SceneMesh *mesh, const float m[12], const cdl_Shape *shape,
-                            float *attributes) {
+                            uint32_t key, float *attributes) {
   float mirror = pack_mirrors(m) ? -1.0f : 1.0f;
-  for (uint32_t i = 0; i < mesh->vertex_count; i++) {
-    pack_point(m, mesh->positions + 3 * (size_t)i, attributes + shape->positions + 3 * (size_t)i);
-    if (mesh->normals)
-      bake_normal(m, mesh->normals + 3 * (size_t)i, attributes + shape->normals + 3 * (size_t)i);
+  size_t first = (size_t)key * mesh->vertex_count;
+  for (size_t i = 0; i < mesh->vertex_count; i++) {
+    size_t to = first + i;
+    pack_point(m, mesh->positions + 3 * i, attributes + shape->positions + 3 * to);
+    if (mesh->normals) bake_normal(m, mesh->normals + 3 * i, attributes + shape->normals + 3 * to);
     if (!mesh->tangents) continue;
-    float *tangent = attributes + shape->tangents + 4 * (size_t)i;
-    bake_direction(m, mesh->tangents + 4 * (size_t)i, tangent);
-    tangent[3] *= mirror;
+    float *tangent = attributes + shape->tangents + 4 * to;
+    bake_direction(m, mesh->tangents + 4 * i, tangent);
+    tangent[3] = mesh->tangents[4 * i + 3] * mirror;
   }
 }
 
@@ -92,9 +99,10 @@ static cdl_Status turn_triangles(Geometry *g, const cdl_SceneMesh *mesh, uint32_
   return CDL_OK;
 }
 
-/* Appends a shape; `to_world` bakes it, NULL leaves it in its own space. */
+/* Appends a shape; `to_world` bakes it, NULL leaves it in its own space. There is room for `keys`
+ * times of its vertices, of which the first is filled. */
 static cdl_Status add_shape(Geometry *g, const cdl_SceneMesh *mesh, const float *to_world,
-                            uint32_t object) {
+                            uint32_t object, uint32_t keys) {
   cdl_Pack *pack = g->pack;
   uint32_t index = (uint32_t)pack->shape_count++;
   cdl_Shape *shape = &pack->shapes[index];
@@ -102,13 +110,14 @@ static cdl_Status add_shape(Geometry *g, const cdl_SceneMesh *mesh, const float 
   shape->object = object;
   shape->first_triangle = (uint32_t)pack->triangle_count;
   shape->first_light = CDL_NONE;
-  shape->positions = append(g, mesh, mesh->positions, 3);
-  shape->normals = append(g, mesh, mesh->normals, 3);
-  shape->tangents = append(g, mesh, mesh->tangents, 4);
-  for (int i = 0; i < 2; i++) shape->uv[i] = append(g, mesh, mesh->uv[i], 2);
-  shape->colors = append(g, mesh, mesh->colors, 4);
+  shape->positions = append(g, mesh, mesh->positions, 3, keys);
+  shape->normals = append(g, mesh, mesh->normals, 3, keys);
+  shape->tangents = append(g, mesh, mesh->tangents, 4, keys);
+  for (int i = 0; i < 2; i++) shape->uv[i] = append(g, mesh, mesh->uv[i], 2, 1);
+  shape->colors = append(g, mesh, mesh->colors, 4, 1);
+  shape->key_stride = keys > 1 ? mesh->vertex_count : 0;
   pack->features.vertex_colors |= mesh->colors != NULL;
-  if (to_world) bake_attributes(mesh, to_world, shape, pack->attributes);
+  if (to_world) bake_attributes(mesh, to_world, shape, 0, pack->attributes);
   if (to_world && pack_mirrors(to_world) && turn_triangles(g, mesh, index)) return CDL_BAD_INPUT;
 
   const uint32_t *indices = g->indices[index] ? g->indices[index] : mesh->indices;
@@ -120,12 +129,16 @@ static cdl_Status add_shape(Geometry *g, const cdl_SceneMesh *mesh, const float 
   g->parts[index] = (cdl_BvhPart){.positions = pack->attributes + shape->positions,
                                   .indices = indices,
                                   .triangle_count = mesh->triangle_count,
-                                  .first_primitive = shape->first_triangle};
+                                  .first_primitive = shape->first_triangle,
+                                  .keys = keys,
+                                  .key_stride = 3 * (size_t)mesh->vertex_count};
   return CDL_OK;
 }
 
-/* Notes what the kernels will meet; emissive shapes get a light a triangle, per instance. */
-static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, uint32_t *first_light) {
+/* Notes what the kernels will meet; emissive shapes get a light a triangle, per instance. Those
+ * that move get none: paths find them. */
+static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, int moves,
+                          uint32_t *first_light) {
   const cdl_Material *material = &g->pack->materials[mesh->material];
   cdl_PackFeatures *features = &g->pack->features;
   int emissive = (material->flags & CDL_MATERIAL_EMISSIVE) != 0;
@@ -133,17 +146,30 @@ static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, uint32_t *firs
   features->passable |= material_passable(material);
   features->opacity |= material_passable(material) && material->model != CDL_MODEL_INTERFACE;
   *first_light = CDL_NONE;
-  if (!emissive) return;
+  if (!emissive || moves) return;
   *first_light = (uint32_t)g->pack->light_count;
   g->pack->light_count += mesh->triangle_count;
   features->triangle_lights = 1;
 }
 
-static cdl_Status bake_instance(Geometry *g, const cdl_SceneInstance *instance) {
+/* The later keys of an instance that moves. */
+static void bake_later(Geometry *g, uint32_t number, const cdl_Shape *shape) {
+  for (uint32_t key = 1; key < g->keys; key++) {
+    const cdl_Scene *scene = g->scene->later[key - 1];
+    const cdl_SceneInstance *instance = &scene->instances[number];
+    bake_attributes(&scene->meshes[instance->mesh], instance->to_world, shape, key,
+                    g->pack->attributes);
+  }
+}
+
+static cdl_Status bake_instance(Geometry *g, uint32_t number) {
+  const cdl_SceneInstance *instance = &g->scene->instances[number];
   const cdl_SceneMesh *mesh = &g->scene->meshes[instance->mesh];
   uint32_t index = (uint32_t)g->pack->shape_count, first_light;
-  if (add_shape(g, mesh, instance->to_world, instance->object)) return CDL_BAD_INPUT;
-  note_instance(g, mesh, &first_light);
+  uint32_t keys = g->moves[number] ? g->keys : 1;
+  if (add_shape(g, mesh, instance->to_world, instance->object, keys)) return CDL_BAD_INPUT;
+  if (keys > 1) bake_later(g, number, &g->pack->shapes[index]);
+  note_instance(g, mesh, keys > 1, &first_light);
   g->pack->shapes[index].first_light = first_light;
   int group =
       material_passable(&g->pack->materials[mesh->material]) ? BAKED_PASSABLE : BAKED_OPAQUE;
@@ -155,7 +181,7 @@ static cdl_Status place_instance(Geometry *g, const cdl_SceneInstance *instance)
   const cdl_SceneMesh *mesh = &g->scene->meshes[instance->mesh];
   if (g->mesh_number[instance->mesh] == CDL_NONE) {
     uint32_t shape = (uint32_t)g->pack->shape_count;
-    if (add_shape(g, mesh, NULL, CDL_NONE)) return CDL_BAD_INPUT;
+    if (add_shape(g, mesh, NULL, CDL_NONE, 1)) return CDL_BAD_INPUT;
     g->mesh_number[instance->mesh] = g->mesh_count;
     g->pack->mesh_shapes[g->mesh_count] = shape;
     g->meshes[g->mesh_count++] = (cdl_BvhMesh){&g->parts[shape], 1};
@@ -166,7 +192,7 @@ static cdl_Status place_instance(Geometry *g, const cdl_SceneInstance *instance)
   placement->mask =
       material_passable(&g->pack->materials[mesh->material]) ? CDL_MASK_PASSABLE : CDL_MASK_OPAQUE;
   placement->object = instance->object;
-  note_instance(g, mesh, &placement->first_light);
+  note_instance(g, mesh, 0, &placement->first_light);
   return CDL_OK;
 }
 
@@ -185,28 +211,54 @@ static void place_baked(Geometry *g) {
   }
 }
 
-static size_t mesh_floats(const cdl_SceneMesh *mesh) {
-  size_t width = 3 + (mesh->normals ? 3 : 0) + (mesh->tangents ? 4 : 0) + (mesh->uv[0] ? 2 : 0) +
-                 (mesh->uv[1] ? 2 : 0) + (mesh->colors ? 4 : 0);
-  return width * mesh->vertex_count;
+static size_t mesh_floats(const cdl_SceneMesh *mesh, uint32_t keys) {
+  size_t moving = 3 + (mesh->normals ? 3 : 0) + (mesh->tangents ? 4 : 0);
+  size_t still = (mesh->uv[0] ? 2 : 0) + (mesh->uv[1] ? 2 : 0) + (mesh->colors ? 4 : 0);
+  return (moving * keys + still) * mesh->vertex_count;
+}
+
+/* What a scene needs of each array. */
+typedef struct Need {
+  size_t floats, triangles, shapes;
+} Need;
+
+static void need_shape(const cdl_SceneMesh *mesh, uint32_t keys, Need *need) {
+  need->floats += mesh_floats(mesh, keys);
+  need->triangles += mesh->triangle_count;
+  need->shapes++;
+}
+
+/* An instance that moves is a shape of its own, others share that of their mesh. */
+static Need count_needs(Geometry *g) {
+  const cdl_Scene *scene = g->scene;
+  Need need = {.floats = 4 + (g->keys > 1 ? 12 * (size_t)g->keys * scene->camera_count : 0)};
+  for (uint32_t i = 0; i < scene->instance_count; i++) {
+    uint32_t mesh = scene->instances[i].mesh;
+    if (g->moves[i])
+      need_shape(&scene->meshes[mesh], g->keys, &need);
+    else
+      g->uses[mesh]++;
+  }
+  for (uint32_t i = 0; i < scene->mesh_count; i++) {
+    g->mesh_number[i] = CDL_NONE;
+    if (g->uses[i]) need_shape(&scene->meshes[i], 1, &need);
+  }
+  return need;
 }
 
 /* Makes room for all that the scene's instances need, and counts how often each mesh is used. */
 static cdl_Status reserve(Geometry *g) {
   const cdl_Scene *scene = g->scene;
   cdl_Pack *pack = g->pack;
-  size_t floats = 4, triangles = 0, shapes = 0;
+  g->keys = scene->later_count + 1;
+  g->moves = pack_array(g->log, "instances", scene->instance_count, sizeof *g->moves);
   g->uses = pack_array(g->log, "meshes", scene->mesh_count, sizeof *g->uses);
   g->mesh_number = pack_array(g->log, "meshes", scene->mesh_count, sizeof *g->mesh_number);
-  if (!g->uses || !g->mesh_number) return CDL_BAD_INPUT;
-  for (uint32_t i = 0; i < scene->instance_count; i++) g->uses[scene->instances[i].mesh]++;
-  for (uint32_t i = 0; i < scene->mesh_count; i++) {
-    g->mesh_number[i] = CDL_NONE;
-    if (!g->uses[i]) continue;
-    floats += mesh_floats(&scene->meshes[i]);
-    triangles += scene->meshes[i].triangle_count;
-    shapes++;
-  }
+  if (!g->moves || !g->uses || !g->mesh_number) return CDL_BAD_INPUT;
+  for (uint32_t i = 0; g->keys > 1 && i < scene->instance_count; i++)
+    g->moves[i] = motion_moves(scene, i) != 0;
+  Need need = count_needs(g);
+  size_t floats = need.floats, triangles = need.triangles, shapes = need.shapes;
   if (floats > UINT32_MAX || triangles > CDL_BVH_INDEX)
     return log_fail(g->log, CDL_BAD_INPUT,
                     "%s: %zu triangles with %zu numbers at their vertices are more than fit; split "
@@ -232,6 +284,7 @@ static cdl_Status reserve(Geometry *g) {
 static void release(Geometry *g) {
   for (size_t i = 0; g->indices && i < g->pack->shape_count; i++) free(g->indices[i]);
   for (int i = 0; i < BAKED_COUNT; i++) free(g->baked[i]);
+  free(g->moves);
   free(g->uses);
   free(g->mesh_number);
   free(g->parts);
@@ -240,16 +293,32 @@ static void release(Geometry *g) {
   free(g->placements);
 }
 
+/* All cameras' matrices, key after key, behind all attributes. */
+static void append_cameras(Geometry *g) {
+  cdl_Pack *pack = g->pack;
+  pack->motion_keys = g->keys;
+  pack->features.motion = 1;
+  pack->camera_keys = (uint32_t)pack->attribute_count;
+  for (uint32_t i = 0; i < g->scene->camera_count; i++)
+    for (uint32_t key = 0; key < g->keys; key++) {
+      const cdl_Scene *scene = key ? g->scene->later[key - 1] : g->scene;
+      memcpy(pack->attributes + pack->attribute_count, scene->cameras[i].to_world,
+             sizeof scene->cameras[i].to_world);
+      pack->attribute_count += 12;
+    }
+}
+
 cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_width,
                          cdl_Pack *pack) {
   Geometry g = {.log = log, .scene = scene, .pack = pack};
   cdl_Status status = reserve(&g);
   for (uint32_t i = 0; !status && i < scene->instance_count; i++) {
     const cdl_SceneInstance *instance = &scene->instances[i];
-    status =
-        g.uses[instance->mesh] == 1 ? bake_instance(&g, instance) : place_instance(&g, instance);
+    int alone = g.moves[i] || g.uses[instance->mesh] == 1;
+    status = alone ? bake_instance(&g, i) : place_instance(&g, instance);
   }
   if (!status) {
+    if (g.keys > 1) append_cameras(&g);
     place_baked(&g);
     cdl_BvhOptions options = {.width = bvh_width};
     status = bvh_build(log, g.meshes, g.mesh_count, g.placements, g.placement_count, &options,

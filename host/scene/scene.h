@@ -178,6 +178,10 @@ struct cdl_Scene {
   cdl_SceneCamera *cameras; /* at least one: a framing camera where the file has none */
   cdl_SceneMedium *media;
   cdl_SceneExtension *extensions;
+  /* The same scene at later times of the exposure, evenly spaced up to its end, alike but for where
+   * vertices, instances and cameras are; only those count. The scene itself is as it begins. */
+  struct cdl_Scene **later;
+  uint32_t later_count;
   char **object_names;
   cdl_SceneAnimation *animations;
   char **variants; /* names of KHR_materials_variants */

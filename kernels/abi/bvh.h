@@ -34,7 +34,8 @@ CDL_ABI_SIZE(cdl_BvhNode, 64);
 typedef struct cdl_BvhTriangle {
   float v0[3], v1[3], v2[3];
   uint primitive; /* global number, in the order of the triangle table; independent of the tree */
-  uint pad[2];
+  uint keys;      /* where its keys lie in this array, if it moves; else 0 */
+  uint pad;
 } cdl_BvhTriangle;
 CDL_ABI_SIZE(cdl_BvhTriangle, 48);
 
@@ -48,7 +49,8 @@ typedef struct cdl_BvhNode8 {
 CDL_ABI_SIZE(cdl_BvhNode8, 256);
 
 /* Width 8: four triangles at once. Unused lanes have primitive CDL_NONE and not-a-number vertices,
- * which no ray hits. */
+ * which no ray hits. In a group of which a triangle moves the first vertex is not a number, and the
+ * bits of v[1] say where its keys lie in this array. */
 typedef struct cdl_BvhTriangle4 {
   float v[36]; /* four times v0.x, then v0.y, v0.z, v1.x … v2.z */
   uint primitive[4];

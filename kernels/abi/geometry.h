@@ -27,7 +27,8 @@ typedef struct cdl_Shape {
   uint tangents;    /* 4 floats a vertex: unit tangent and handedness */
   uint uv[2];       /* 2 floats a vertex */
   uint colors;      /* 4 floats a vertex: linear RGB and opacity */
-  uint pad[2];
+  uint key_stride;  /* vertices from one key of its motion to the next; 0: it stands still */
+  uint pad;
 } cdl_Shape;
 CDL_ABI_SIZE(cdl_Shape, 48);
 

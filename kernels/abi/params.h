@@ -43,8 +43,10 @@ typedef struct cdl_Params {
   uint scene_medium;     /* index into the media */
   float scene_center[3]; /* sphere around the world's bounds */
   float scene_radius;
-  uint pass_limit; /* surfaces that a path may go straight through, all in all */
-  uint pad[3];
+  uint pass_limit;  /* surfaces that a path may go straight through, all in all */
+  uint motion_keys; /* times at which moving things are known; below 2: nothing moves */
+  uint camera_keys; /* where the camera's matrices at those times lie in the attributes */
+  uint pad;
 } cdl_Params;
 CDL_ABI_SIZE(cdl_Params, 208);
 

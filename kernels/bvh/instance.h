@@ -48,7 +48,7 @@ CDL_INLINE int bvh_search_mesh(CDL_GLOBAL const BvhNode *nodes,
  * only instance; then there is no top level to search. */
 CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
                           CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                          float tmax, uint mask, Hit after, int any) {
+                          float tmax, uint mask, Hit after, int any CDL_TIME_PARAM) {
   BvhStack stack;
   BvhQuery query;
   BvhRay world;
@@ -57,6 +57,9 @@ CDL_INLINE Hit bvh_search(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhT
   stack.enter[0] = 0.0f;
   query.best = hit_none(tmax);
   query.after = after;
+#ifdef CDL_MOTION
+  query.time = time;
+#endif
   if ((root & CDL_BVH_LEAF) == 0u) {
     world = bvh_ray_in_world(nodes + root, o, d);
     if (!bvh_ray_is_usable(world)) return query.best;

@@ -14,6 +14,9 @@
  * repeating one; bvh_occluded is 1 exactly where bvh_closest hits. Rays with an infinite or
  * not-a-number component or without direction hit nothing. The answers do not depend on the tree:
  * bvh/triangle.h says why.
+ *
+ * With -DCDL_MOTION each takes the time as well, a MotionTime after the others: the answer is that
+ * for the scene as it stands then.
  */
 #ifndef CDL_BVH_TRAVERSE_H
 #define CDL_BVH_TRAVERSE_H
@@ -32,22 +35,23 @@
 CDL_INLINE Hit bvh_closest_after(CDL_GLOBAL const BvhNode *nodes,
                                  CDL_GLOBAL const BvhTriangle *triangles,
                                  CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o,
-                                 vec3 d, float tmax, uint mask, Hit after) {
-  return bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, after, 0);
+                                 vec3 d, float tmax, uint mask, Hit after CDL_TIME_PARAM) {
+  return bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, after, 0 CDL_TIME(time));
 }
 
 CDL_INLINE int bvh_occluded(CDL_GLOBAL const BvhNode *nodes,
                             CDL_GLOBAL const BvhTriangle *triangles,
                             CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                            float tmax, uint mask) {
-  return hit_is_some(
-      bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f), 1));
+                            float tmax, uint mask CDL_TIME_PARAM) {
+  return hit_is_some(bvh_search(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f),
+                                1 CDL_TIME(time)));
 }
 
 CDL_INLINE Hit bvh_closest(CDL_GLOBAL const BvhNode *nodes, CDL_GLOBAL const BvhTriangle *triangles,
                            CDL_GLOBAL const cdl_BvhInstance *instances, uint root, vec3 o, vec3 d,
-                           float tmax, uint mask) {
-  return bvh_closest_after(nodes, triangles, instances, root, o, d, tmax, mask, hit_none(0.0f));
+                           float tmax, uint mask CDL_TIME_PARAM) {
+  return bvh_closest_after(nodes, triangles, instances, root, o, d, tmax, mask,
+                           hit_none(0.0f) CDL_TIME(time));
 }
 
 #endif

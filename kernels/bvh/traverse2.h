@@ -13,6 +13,20 @@
 typedef cdl_BvhNode BvhNode;
 typedef cdl_BvhTriangle BvhTriangle;
 
+#ifdef CDL_MOTION
+/* A triangle that moves: its corners between two of its keys. */
+CDL_INLINE int bvh_moving(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles,
+                          CDL_GLOBAL const BvhTriangle *w, BvhQuery *query) {
+  CDL_GLOBAL const BvhTriangle *p = triangles + w->keys + query->time.key;
+  CDL_GLOBAL const BvhTriangle *q = p + 1;
+  float f = query->time.fraction;
+  vec3 a = motion_mix3(attribute_vec3(p->v0, 0), attribute_vec3(q->v0, 0), f);
+  vec3 b = motion_mix3(attribute_vec3(p->v1, 0), attribute_vec3(q->v1, 0), f);
+  vec3 c = motion_mix3(attribute_vec3(p->v2, 0), attribute_vec3(q->v2, 0), f);
+  return bvh_take_moving(ray, a, b, c, w->primitive, query);
+}
+#endif
+
 /* Tests the triangles of a leaf; 1 if one became the best hit. */
 CDL_INLINE int bvh_leaf(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles, uint leaf,
                         BvhQuery *query) {
@@ -21,6 +35,12 @@ CDL_INLINE int bvh_leaf(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles, uin
   int taken = 0;
   for (uint i = first; i <= last; i++) {
     CDL_GLOBAL const BvhTriangle *w = triangles + i;
+#ifdef CDL_MOTION
+    if (w->keys != 0u) {
+      taken |= bvh_moving(ray, triangles, w, query);
+      continue;
+    }
+#endif
     float t, u, v;
     if (!triangle_test(ray, triangle_shear(ray, w->v0, w->v1, w->v2), &t, &u, &v)) continue;
     float enter =

@@ -115,12 +115,41 @@ CDL_INLINE int bvh_group(BvhRay ray, CDL_GLOBAL const BvhTriangle *w, BvhQuery *
   return bvh_take_lanes(ray, w, mask, t, e.e1 / determinant, e.e2 / determinant, query);
 }
 
+#ifdef CDL_MOTION
+/* Corner `corner` of lane i between two keys of its group. */
+CDL_INLINE vec3 bvh_lane_at(CDL_GLOBAL const BvhTriangle *p, uint corner, uint i, float f) {
+  CDL_GLOBAL const float *a = p->v + 12u * corner + i;
+  CDL_GLOBAL const float *b = (p + 1)->v + 12u * corner + i;
+  return motion_mix3(v3(a[0], a[4], a[8]), v3(b[0], b[4], b[8]), f);
+}
+
+/* A group of which a triangle moves, one lane after the other. */
+CDL_INLINE int bvh_moving(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles,
+                          CDL_GLOBAL const BvhTriangle *w, BvhQuery *query) {
+  CDL_GLOBAL const BvhTriangle *p = triangles + as_uint(w->v[1]) + query->time.key;
+  float f = query->time.fraction;
+  int taken = 0;
+  for (uint i = 0; i < 4u && w->primitive[i] != CDL_NONE; i++)
+    taken |= bvh_take_moving(ray, bvh_lane_at(p, 0u, i, f), bvh_lane_at(p, 1u, i, f),
+                             bvh_lane_at(p, 2u, i, f), w->primitive[i], query);
+  return taken;
+}
+#endif
+
 CDL_INLINE int bvh_leaf(BvhRay ray, CDL_GLOBAL const BvhTriangle *triangles, uint leaf,
                         BvhQuery *query) {
   uint first = leaf & CDL_BVH_INDEX;
   uint last = first + ((leaf & ~CDL_BVH_LEAF) >> CDL_BVH_LENGTH_SHIFT);
   int taken = 0;
-  for (uint i = first; i <= last; i++) taken |= bvh_group(ray, triangles + i, query);
+  for (uint i = first; i <= last; i++) {
+#ifdef CDL_MOTION
+    if (triangles[i].v[0] != triangles[i].v[0]) {
+      taken |= bvh_moving(ray, triangles, triangles + i, query);
+      continue;
+    }
+#endif
+    taken |= bvh_group(ray, triangles + i, query);
+  }
   return taken;
 }
 

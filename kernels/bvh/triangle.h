@@ -27,6 +27,7 @@
 #define CDL_BVH_TRIANGLE_H
 
 #include "bvh/hit.h"
+#include "lib/motion.h"
 
 #define BVH_PAD 9.5367431640625e-7f          /* 16 u: one mesh, seen in its own space */
 #define BVH_PAD_INSTANCES 3.814697265625e-6f /* 64 u: rays are transformed below */
@@ -150,6 +151,21 @@ CDL_INLINE Sheared triangle_shear(BvhRay r, CDL_GLOBAL const float *v0, CDL_GLOB
   return s;
 }
 
+/* The same for corners that were worked out. */
+CDL_INLINE Sheared corners_shear(BvhRay r, vec3 a, vec3 b, vec3 c) {
+  Sheared s;
+  s.az = bvh_component(a, r.axis_z) - r.origin_z;
+  s.bz = bvh_component(b, r.axis_z) - r.origin_z;
+  s.cz = bvh_component(c, r.axis_z) - r.origin_z;
+  s.ax = fma(-r.shear_x, s.az, bvh_component(a, r.axis_x) - r.origin_x);
+  s.ay = fma(-r.shear_y, s.az, bvh_component(a, r.axis_y) - r.origin_y);
+  s.bx = fma(-r.shear_x, s.bz, bvh_component(b, r.axis_x) - r.origin_x);
+  s.by = fma(-r.shear_y, s.bz, bvh_component(b, r.axis_y) - r.origin_y);
+  s.cx = fma(-r.shear_x, s.cz, bvh_component(c, r.axis_x) - r.origin_x);
+  s.cy = fma(-r.shear_y, s.cz, bvh_component(c, r.axis_y) - r.origin_y);
+  return s;
+}
+
 /* Whether the line of the ray meets the triangle, where (t) and at which u, v. Both orientations.
  */
 CDL_INLINE int triangle_test(BvhRay r, Sheared s, float *t, float *u, float *v) {
@@ -177,6 +193,9 @@ typedef struct BvhQuery {
   Hit after;            /* hits up to and with this one do not count; at first hit_none(0) */
   float instance_enter; /* where the ray enters the instance's box */
   uint instance;
+#ifdef CDL_MOTION
+  MotionTime time;
+#endif
 } BvhQuery;
 
 /* Takes a hit that passed the triangle test if it is the best so far; 1 if so. */
@@ -205,5 +224,15 @@ CDL_INLINE float triangle_enter(BvhRay r, vec3 a, vec3 b, vec3 c) {
                     r.sign_z == 2u ? high.z : low.z);
   return bvh_slabs(r, closer, farther, CDL_INFINITY);
 }
+
+#ifdef CDL_MOTION
+/* Tests a triangle that moves, given where it is now; 1 if it became the best hit. */
+CDL_INLINE int bvh_take_moving(BvhRay ray, vec3 a, vec3 b, vec3 c, uint primitive,
+                               BvhQuery *query) {
+  float t, u, v;
+  if (!triangle_test(ray, corners_shear(ray, a, b, c), &t, &u, &v)) return 0;
+  return bvh_take(query, t, u, v, primitive, triangle_enter(ray, a, b, c));
+}
+#endif
 
 #endif

@@ -3,6 +3,7 @@
 #define CDL_CAMERA_H
 
 #include "abi/params.h"
+#include "lib/motion.h"
 #include "lib/sampling.h"
 #include "lib/transform.h"
 
@@ -19,6 +20,25 @@ CDL_INLINE Transform transform_of_camera(CDL_CONSTANT cdl_CameraParams *camera) 
   t.z = v3(m[8], m[9], m[10]);
   t.move = v3(m[3], m[7], m[11]);
   return t;
+}
+
+/* Where the camera is, at the time of the path where it moves. */
+CDL_INLINE Transform camera_to_world(CDL_CONSTANT cdl_Params *params,
+                                     CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
+#ifdef CDL_MOTION
+  CDL_GLOBAL const float *keys = attributes + params->camera_keys + 12u * (size_t)time.key;
+  Transform a = transform_load(keys);
+  Transform b = transform_load(keys + 12);
+  Transform t;
+  t.x = motion_mix3(a.x, b.x, time.fraction);
+  t.y = motion_mix3(a.y, b.y, time.fraction);
+  t.z = motion_mix3(a.z, b.z, time.fraction);
+  t.move = motion_mix3(a.move, b.move, time.fraction);
+  return t;
+#else
+  (void)attributes;
+  return transform_of_camera(&params->camera);
+#endif
 }
 
 /* A point on the lens in camera space: round, or a regular polygon of `blades` sides with a corner
@@ -41,8 +61,8 @@ CDL_INLINE vec3 camera_lens_point(CDL_CONSTANT cdl_CameraParams *camera, float u
 }
 
 /* x and y in [0,1] from the top left of the image; u and v choose the point on the lens. */
-CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, float y, float u,
-                                float v) {
+CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, Transform to_world, float x,
+                                float y, float u, float v) {
   float sx = fma(2.0f, x, -1.0f) * camera->scale[0];
   float sy = fma(-2.0f, y, 1.0f) * camera->scale[1];
   vec3 lens = camera_lens_point(camera, u, v);
@@ -52,7 +72,6 @@ CDL_INLINE CameraRay camera_ray(CDL_CONSTANT cdl_CameraParams *camera, float x, 
   vec3 towards =
       v3_select(ortho, v3(0.0f, 0.0f, -1.0f), v3_madd(focus, -camera->inverse_focus, lens));
   CameraRay ray;
-  Transform to_world = transform_of_camera(camera);
   ray.origin = transform_point(to_world, origin);
   ray.direction = v3_normalize(transform_direction(to_world, towards));
   return ray;

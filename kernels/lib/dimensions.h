@@ -6,6 +6,7 @@
 #define CDL_DIMENSIONS_H
 
 #include "abi/params.h"
+#include "lib/motion.h"
 #include "lib/rng.h"
 
 #define CDL_PAIR_FILM 0u
@@ -46,6 +47,23 @@ CDL_INLINE PathRandom path_random(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT 
   random.pad = 0u;
   return random;
 }
+
+#ifdef CDL_MOTION
+/* The time of a path, uniform over the shutter: the same for all its rays. */
+CDL_INLINE MotionTime path_time(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_Wave *wave,
+                                uint slot) {
+  PathRandom random = path_random(params, wave, slot);
+  float unused, t;
+  rng_2d(random.key, random.sample, CDL_PAIR_PATH, &unused, &t);
+  uint last = params->motion_keys - 2u;
+  t = t * (float)(int)(last + 1u);
+  uint key = (uint)(int)floor(t);
+  MotionTime time;
+  time.key = key > last ? last : key;
+  time.fraction = t - floor(t);
+  return time;
+}
+#endif
 
 /* Bits of the pair `which`, for choosing among many. */
 CDL_INLINE void vertex_random_bits(PathRandom random, uint vertex, uint which, uint *u, uint *v) {

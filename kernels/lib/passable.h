@@ -6,22 +6,25 @@
 #include "abi/bvh.h"
 #include "bvh/hit.h"
 #include "lib/material.h"
+#include "lib/motion.h"
 #include "lib/transform.h"
 #include "media/stack.h"
 
 /* Whether a ray along `direction` meets the front of the triangle: whether it enters. */
 CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInstance *instances,
                           CDL_GLOBAL const cdl_Triangle *triangles,
-                          CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes) {
+                          CDL_GLOBAL const cdl_Shape *shapes,
+                          CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
   CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
-  CDL_GLOBAL const float *p = attributes + shapes[triangle->shape].positions;
-  CDL_GLOBAL const float *a = p + 3 * (size_t)triangle->corner[0];
-  CDL_GLOBAL const float *b = p + 3 * (size_t)triangle->corner[1];
-  CDL_GLOBAL const float *c = p + 3 * (size_t)triangle->corner[2];
-  vec3 e1 = v3(b[0] - a[0], b[1] - a[1], b[2] - a[2]);
-  vec3 e2 = v3(c[0] - a[0], c[1] - a[1], c[2] - a[2]);
+  CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
+  size_t p = shape->positions;
+  size_t step = 3u * (size_t)shape->key_stride;
+  vec3 a = attribute_at(attributes, p + 3u * (size_t)triangle->corner[0], step CDL_TIME(time));
+  vec3 b = attribute_at(attributes, p + 3u * (size_t)triangle->corner[1], step CDL_TIME(time));
+  vec3 c = attribute_at(attributes, p + 3u * (size_t)triangle->corner[2], step CDL_TIME(time));
   Transform to_object = transform_load(instances[hit.instance].to_object);
-  return v3_dot(transform_transposed(to_object, v3_cross(e1, e2)), direction) < 0.0f;
+  vec3 normal = v3_cross(v3_sub(b, a), v3_sub(c, a));
+  return v3_dot(transform_transposed(to_object, normal), direction) < 0.0f;
 }
 
 /* Whether `hit` is the same crossing as the `last` hit of its ray: a ray through an edge meets the
@@ -30,20 +33,21 @@ CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInsta
 CDL_INLINE int hit_repeats(Hit hit, Hit last, vec3 direction,
                            CDL_GLOBAL const cdl_BvhInstance *instances,
                            CDL_GLOBAL const cdl_Triangle *triangles,
-                           CDL_GLOBAL const cdl_Shape *shapes, CDL_GLOBAL const float *attributes) {
+                           CDL_GLOBAL const cdl_Shape *shapes,
+                           CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
   if (!hit_is_some(hit) || !hit_is_some(last) || hit.instance != last.instance) return 0;
   if (triangles[hit.primitive].shape != triangles[last.primitive].shape) return 0;
   if (hit.t - last.t > 1e-6f * hit.t) return 0;
-  return hit_enters(hit, direction, instances, triangles, shapes, attributes) ==
-         hit_enters(last, direction, instances, triangles, shapes, attributes);
+  return hit_enters(hit, direction, instances, triangles, shapes, attributes CDL_TIME(time)) ==
+         hit_enters(last, direction, instances, triangles, shapes, attributes CDL_TIME(time));
 }
 
 CDL_INLINE MediaStack hit_crossed(Hit hit, MediaStack stack, vec3 direction, uint medium,
                                   CDL_GLOBAL const cdl_BvhInstance *instances,
                                   CDL_GLOBAL const cdl_Triangle *triangles,
                                   CDL_GLOBAL const cdl_Shape *shapes,
-                                  CDL_GLOBAL const float *attributes) {
-  int enters = hit_enters(hit, direction, instances, triangles, shapes, attributes);
+                                  CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
+  int enters = hit_enters(hit, direction, instances, triangles, shapes, attributes CDL_TIME(time));
   return media_crossed(stack, medium, enters);
 }
 

@@ -6,6 +6,7 @@
 #include "abi/geometry.h"
 #include "lib/frame.h"
 #include "lib/math.h"
+#include "lib/motion.h"
 #include "lib/transform.h"
 
 typedef struct SurfacePoint {
@@ -16,10 +17,6 @@ typedef struct SurfacePoint {
   float handedness; /* bitangent = handedness x (normal x tangent) */
 } SurfacePoint;
 
-CDL_INLINE vec3 attribute_vec3(CDL_GLOBAL const float *attributes, size_t i) {
-  return v3(attributes[i], attributes[i + 1], attributes[i + 2]);
-}
-
 CDL_INLINE vec3 barycentric(vec3 a, vec3 b, vec3 c, float u, float v) {
   return v3_madd(v3_madd(v3_scale(a, 1.0f - u - v), u, b), v, c);
 }
@@ -28,7 +25,8 @@ CDL_INLINE vec3 barycentric(vec3 a, vec3 b, vec3 c, float u, float v) {
 CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance,
                                       CDL_GLOBAL const cdl_Shape *shape,
                                       CDL_GLOBAL const float *attributes,
-                                      CDL_GLOBAL const cdl_Triangle *triangle, float u, float v) {
+                                      CDL_GLOBAL const cdl_Triangle *triangle, float u,
+                                      float v CDL_TIME_PARAM) {
   uint c0 = triangle->corner[0];
   uint c1 = triangle->corner[1];
   uint c2 = triangle->corner[2];
@@ -36,25 +34,27 @@ CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance
   Transform to_object = transform_load(instance->to_object);
 
   size_t positions = shape->positions;
-  vec3 p0 = attribute_vec3(attributes, positions + 3u * c0);
-  vec3 p1 = attribute_vec3(attributes, positions + 3u * c1);
-  vec3 p2 = attribute_vec3(attributes, positions + 3u * c2);
+  size_t step = 3u * (size_t)shape->key_stride;
+  vec3 p0 = attribute_at(attributes, positions + 3u * c0, step CDL_TIME(time));
+  vec3 p1 = attribute_at(attributes, positions + 3u * c1, step CDL_TIME(time));
+  vec3 p2 = attribute_at(attributes, positions + 3u * c2, step CDL_TIME(time));
   vec3 flat_normal = v3_cross(v3_sub(p1, p0), v3_sub(p2, p0));
 
   int smooth = shape->normals != CDL_NONE;
   size_t normals = smooth ? shape->normals : positions;
-  vec3 n0 = attribute_vec3(attributes, normals + 3u * c0);
-  vec3 n1 = attribute_vec3(attributes, normals + 3u * c1);
-  vec3 n2 = attribute_vec3(attributes, normals + 3u * c2);
+  vec3 n0 = attribute_at(attributes, normals + 3u * c0, step CDL_TIME(time));
+  vec3 n1 = attribute_at(attributes, normals + 3u * c1, step CDL_TIME(time));
+  vec3 n2 = attribute_at(attributes, normals + 3u * c2, step CDL_TIME(time));
   vec3 blended = barycentric(n0, n1, n2, u, v);
   smooth = smooth & (v3_length2(blended) > 1e-12f);
 
   int has_tangent = shape->tangents != CDL_NONE;
   size_t tangents = has_tangent ? shape->tangents : 0u;
   uint stride = has_tangent ? 4u : 0u;
-  vec3 t0 = attribute_vec3(attributes, tangents + stride * c0);
-  vec3 t1 = attribute_vec3(attributes, tangents + stride * c1);
-  vec3 t2 = attribute_vec3(attributes, tangents + stride * c2);
+  size_t turn = stride * (size_t)shape->key_stride;
+  vec3 t0 = attribute_at(attributes, tangents + stride * c0, turn CDL_TIME(time));
+  vec3 t1 = attribute_at(attributes, tangents + stride * c1, turn CDL_TIME(time));
+  vec3 t2 = attribute_at(attributes, tangents + stride * c2, turn CDL_TIME(time));
   float handedness = attributes[tangents + stride * c0 + 3u];
 
   SurfacePoint s;

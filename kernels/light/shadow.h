@@ -71,13 +71,13 @@ CDL_INLINE vec3 medium_transmittance(CDL_GLOBAL const cdl_Medium *medium, float 
 CDL_INLINE vec3 shadow_filter(vec3 radiance, ShadowRay ray, MediaStack stack, uint outside,
                               uint limit, CDL_GLOBAL const BvhNode *nodes,
                               CDL_GLOBAL const BvhTriangle *bvh_triangles, uint root,
-                              CDL_GLOBAL const cdl_Medium *media, CDL_SURFACE_ARGS) {
+                              CDL_GLOBAL const cdl_Medium *media, CDL_SURFACE_ARGS CDL_TIME_PARAM) {
   Hit last = hit_none(0.0f);
   for (uint passed = 0; passed < limit && v3_max(radiance) > 0.0f; passed++) {
     Hit hit = hit_none(0.0f);
 #ifdef CDL_PASSABLE
     hit = bvh_closest_after(nodes, bvh_triangles, instances, root, ray.origin, ray.direction,
-                            ray.reach, CDL_MASK_PASSABLE, last);
+                            ray.reach, CDL_MASK_PASSABLE, last CDL_TIME(time));
 #endif
     int arrived = !hit_is_some(hit);
 #ifdef CDL_MEDIA
@@ -88,14 +88,15 @@ CDL_INLINE vec3 shadow_filter(vec3 radiance, ShadowRay ray, MediaStack stack, ui
     if (arrived) return radiance;
     CDL_GLOBAL const cdl_Material *material =
         materials + shapes[triangles[hit.primitive].shape].material;
-    int repeated = hit_repeats(hit, last, ray.direction, instances, triangles, shapes, attributes);
+    int repeated = hit_repeats(hit, last, ray.direction, instances, triangles, shapes,
+                               attributes CDL_TIME(time));
     if (material->model != CDL_MODEL_INTERFACE) {
       float through = surface_transmittance(hit, instances, triangles, shapes, attributes,
                                             materials, textures, texels, srgb);
       radiance = v3_scale(radiance, repeated ? 1.0f : through);
     } else if (!repeated) {
       stack = hit_crossed(hit, stack, ray.direction, material->medium, instances, triangles, shapes,
-                          attributes);
+                          attributes CDL_TIME(time));
     }
     last = hit;
   }

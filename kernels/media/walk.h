@@ -15,13 +15,14 @@ CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, 
                                  CDL_GLOBAL const cdl_Triangle *triangles,
                                  CDL_GLOBAL const cdl_Shape *shapes,
                                  CDL_GLOBAL const float *attributes,
-                                 CDL_GLOBAL const cdl_Material *materials) {
+                                 CDL_GLOBAL const cdl_Material *materials CDL_TIME_PARAM) {
   Hit last = hit_none(0.0f);
   for (uint crossed = 0; crossed < limit; crossed++) {
     Hit hit = bvh_closest_after(nodes, bvh_triangles, instances, root, origin, direction, reach,
-                                CDL_MASK_ALL, last);
+                                CDL_MASK_ALL, last CDL_TIME(time));
     if (!hit_is_some(hit)) break;
-    int repeated = hit_repeats(hit, last, direction, instances, triangles, shapes, attributes);
+    int repeated =
+        hit_repeats(hit, last, direction, instances, triangles, shapes, attributes CDL_TIME(time));
     CDL_GLOBAL const cdl_Material *material =
         materials + shapes[triangles[hit.primitive].shape].material;
     /* Opaque surfaces count where they hold a medium: without one, nothing says that they are
@@ -29,7 +30,7 @@ CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, 
     int boundary = (material->flags & CDL_MATERIAL_BOUNDARY) != 0u;
     if (boundary && !repeated)
       stack = hit_crossed(hit, stack, direction, material->medium, instances, triangles, shapes,
-                          attributes);
+                          attributes CDL_TIME(time));
     last = hit;
   }
   return stack;

@@ -20,9 +20,13 @@ __kernel void camera_medium(CDL_CONSTANT cdl_Params *restrict params,
   /* An odd direction, so that the ray does not run along edges of what people model. */
   vec3 direction = v3_normalize(v3(0.3713907f, -0.8017837f, 0.4682165f));
   float reach = 2.0f * params->scene_radius + v3_length(v3_sub(camera, center));
-  MediaStack stack = media_walk(media_make(0u, 0u), v3_madd(camera, -reach, direction), direction,
-                                reach, params->pass_limit, bvh_nodes, bvh_triangles, bvh_instances,
-                                params->top_root, triangles, shapes, attributes, materials);
+#ifdef CDL_MOTION
+  MotionTime time = {0u, 0.0f}; /* where the camera is as the shutter opens */
+#endif
+  MediaStack stack =
+      media_walk(media_make(0u, 0u), v3_madd(camera, -reach, direction), direction, reach,
+                 params->pass_limit, bvh_nodes, bvh_triangles, bvh_instances, params->top_root,
+                 triangles, shapes, attributes, materials CDL_TIME(time));
   camera_media[0] = stack.inner;
   camera_media[1] = stack.outer;
 }

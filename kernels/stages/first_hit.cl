@@ -3,6 +3,8 @@
 
 #include "abi/bvh.h"
 #include "abi/params.h"
+#include "lib/camera.h"
+#include "lib/dimensions.h"
 #include "lib/material.h"
 #include "lib/state.h"
 
@@ -32,9 +34,12 @@ first_hit(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restr
   int lit = (front | (material->flags & CDL_MATERIAL_DOUBLE_SIDED)) != 0u;
   vec3 emission = material_emission(material, uv, textures, texels, srgb);
   vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
-  CDL_CONSTANT float *to_world = params->camera.to_world;
-  vec3 from_camera = v3_sub(position, v3(to_world[3], to_world[7], to_world[11]));
-  vec3 backwards = v3_normalize(v3(to_world[2], to_world[6], to_world[10]));
+#ifdef CDL_MOTION
+  MotionTime time = path_time(params, wave, slot);
+#endif
+  Transform camera = camera_to_world(params, attributes CDL_TIME(time));
+  vec3 from_camera = v3_sub(position, camera.move);
+  vec3 backwards = v3_normalize(v3(camera.x.z, camera.y.z, camera.z.z));
   uint object = shape->object != CDL_NONE ? shape->object : instance->object;
 
   state_set_vec3(slots, CDL_SLOT_ALBEDO, wave->slots, slot,

@@ -8,6 +8,7 @@
 
 __kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
                        CDL_CONSTANT cdl_Wave *restrict wave,
+                       CDL_GLOBAL const float *restrict attributes,
                        CDL_GLOBAL const uint *restrict camera_media, CDL_GLOBAL uint *path,
                        CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
   CDL_FOR_EACH_ITEM(i) {
@@ -19,7 +20,11 @@ __kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
     rng_2d(random.key, random.sample, CDL_PAIR_LENS, &lens_u, &lens_v);
     float x = ((float)(int)random.x + film_u) / (float)(int)params->width;
     float y = ((float)(int)random.y + film_v) / (float)(int)params->height;
-    CameraRay ray = camera_ray(&params->camera, x, y, lens_u, lens_v);
+#ifdef CDL_MOTION
+    MotionTime time = path_time(params, wave, (uint)i);
+#endif
+    Transform to_world = camera_to_world(params, attributes CDL_TIME(time));
+    CameraRay ray = camera_ray(&params->camera, to_world, x, y, lens_u, lens_v);
 
     state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, ray.origin);
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, ray.direction);

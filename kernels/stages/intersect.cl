@@ -5,6 +5,7 @@
 #include "abi/material.h"
 #include "abi/params.h"
 #include "bvh/traverse.h"
+#include "lib/dimensions.h"
 #include "lib/passable.h"
 #include "lib/state.h"
 
@@ -34,6 +35,9 @@ intersect(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restr
   if (state_uint(work, CDL_WORK_QUEUE, stride, i) == CDL_QUEUE_DEAD) return;
   vec3 origin = state_vec3(path, CDL_PATH_ORIGIN, stride, i);
   vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+#ifdef CDL_MOTION
+  MotionTime time = path_time(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+#endif
 #ifdef CDL_PASSABLE
   Hit last = hit_none(state_float(path, CDL_PATH_PASSED, stride, i));
   if (last.t > 0.0f) {
@@ -41,15 +45,16 @@ intersect(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restr
     last.instance = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
   }
   Hit hit = bvh_closest_after(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
-                              direction, CDL_INFINITY, CDL_MASK_ALL, last);
-  while (hit_repeats(hit, last, direction, bvh_instances, triangles, shapes, attributes)) {
+                              direction, CDL_INFINITY, CDL_MASK_ALL, last CDL_TIME(time));
+  while (hit_repeats(hit, last, direction, bvh_instances, triangles, shapes,
+                     attributes CDL_TIME(time))) {
     last = hit;
     hit = bvh_closest_after(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
-                            direction, CDL_INFINITY, CDL_MASK_ALL, last);
+                            direction, CDL_INFINITY, CDL_MASK_ALL, last CDL_TIME(time));
   }
 #else
   Hit hit = bvh_closest(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, origin,
-                        direction, CDL_INFINITY, CDL_MASK_ALL);
+                        direction, CDL_INFINITY, CDL_MASK_ALL CDL_TIME(time));
 #endif
   int found = hit_is_some(hit);
   state_set_float(path, CDL_PATH_HIT_T, stride, i, found ? hit.t : CDL_INFINITY);

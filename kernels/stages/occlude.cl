@@ -3,6 +3,7 @@
 #include "lib/portable.h"
 
 #include "abi/params.h"
+#include "lib/dimensions.h"
 #include "lib/state.h"
 #include "light/shadow.h"
 
@@ -24,15 +25,19 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
                              state_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i),
                              state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i),
                              state_float(work, CDL_WORK_LIGHT_DISTANCE, stride, i));
+#ifdef CDL_MOTION
+  MotionTime time = path_time(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+#endif
   if (bvh_occluded(bvh_nodes, bvh_triangles, bvh_instances, params->top_root, ray.origin,
-                   ray.direction, ray.reach, CDL_MASK_OPAQUE))
+                   ray.direction, ray.reach, CDL_MASK_OPAQUE CDL_TIME(time)))
     return;
 #if defined(CDL_MEDIA) || defined(CDL_PASSABLE)
   MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                 state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-  radiance = shadow_filter(radiance, ray, stack, params->scene_medium, params->pass_limit,
-                           bvh_nodes, bvh_triangles, params->top_root, media, bvh_instances,
-                           triangles, shapes, attributes, materials, textures, texels, srgb);
+  radiance =
+      shadow_filter(radiance, ray, stack, params->scene_medium, params->pass_limit, bvh_nodes,
+                    bvh_triangles, params->top_root, media, bvh_instances, triangles, shapes,
+                    attributes, materials, textures, texels, srgb CDL_TIME(time));
 #endif
   state_add_radiance(slots, wave->slots, state_uint(path, CDL_PATH_SLOT, stride, i), radiance);
 }

@@ -3,6 +3,7 @@
 #include "lib/portable.h"
 
 #include "abi/params.h"
+#include "lib/dimensions.h"
 #include "lib/material.h"
 #include "lib/state.h"
 #include "lib/surface.h"
@@ -12,13 +13,15 @@ CDL_INLINE float texel_channel(Texel texel, uint channel) {
 }
 
 __kernel void
-parameters(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
+parameters(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restrict wave,
+           CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
            CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
            CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
            CDL_GLOBAL const cdl_ParamTexture *param_textures,
            CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
            CDL_GLOBAL const float *srgb, CDL_GLOBAL const uint *path, CDL_GLOBAL uint *work) {
   size_t i = get_global_id(0);
+  (void)params;
   size_t stride = wave->stride;
   CDL_GLOBAL const cdl_Material *material =
       materials + state_uint(work, CDL_WORK_MATERIAL, stride, i);
@@ -47,9 +50,12 @@ parameters(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_BvhInstanc
   int front = (state_uint(work, CDL_WORK_VERTEX, stride, i) & CDL_VERTEX_FRONT) != 0u;
   CDL_GLOBAL const cdl_Triangle *hit =
       triangles + state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i);
+#ifdef CDL_MOTION
+  MotionTime time = path_time(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+#endif
   SurfacePoint point = surface_point(instance, shapes + hit->shape, attributes, hit,
                                      state_float(path, CDL_PATH_HIT_U, stride, i),
-                                     state_float(path, CDL_PATH_HIT_V, stride, i));
+                                     state_float(path, CDL_PATH_HIT_V, stride, i) CDL_TIME(time));
   vec3 normal = point.normal;
 #ifdef CDL_TEXTURES
   normal = material_normal(&material->coat_normal_texture, material->coat_normal_scale, point, uv,

@@ -2,11 +2,13 @@
 #include "lib/stage.h"
 
 #include "abi/params.h"
+#include "lib/dimensions.h"
 #include "lib/material.h"
 #include "lib/state.h"
 #include "lib/surface.h"
 
-__kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
+__kernel void surface(CDL_CONSTANT cdl_Params *restrict params,
+                      CDL_CONSTANT cdl_Wave *restrict wave,
                       CDL_GLOBAL const cdl_BvhInstance *bvh_instances,
                       CDL_GLOBAL const cdl_Triangle *triangles, CDL_GLOBAL const cdl_Shape *shapes,
                       CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
@@ -25,8 +27,13 @@ __kernel void surface(CDL_CONSTANT cdl_Wave *restrict wave,
     CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
     uint material_index = shape->material;
     CDL_GLOBAL const cdl_Material *material = materials + material_index;
-    SurfacePoint point =
-        surface_point(bvh_instances + instance_index, shape, attributes, triangle, u, v);
+#ifdef CDL_MOTION
+    MotionTime time = path_time(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+#else
+    (void)params;
+#endif
+    SurfacePoint point = surface_point(bvh_instances + instance_index, shape, attributes, triangle,
+                                       u, v CDL_TIME(time));
 
     vec3 normal = point.normal;
     TextureCoords uv;

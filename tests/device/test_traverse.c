@@ -96,7 +96,7 @@ static cdl_Bvh build_scene(Shape shapes[2], int width) {
   cdl_BvhOptions options = {.width = width};
   cdl_Bvh bvh;
   for (int i = 0; i < 2; i++) {
-    parts[i] = (cdl_BvhPart){shapes[i].positions, shapes[i].indices, shapes[i].triangles, 0};
+    parts[i] = (cdl_BvhPart){shapes[i].positions, shapes[i].indices, shapes[i].triangles, 0, 0, 0};
     meshes[i] = (cdl_BvhMesh){parts + i, 1};
   }
   for (uint32_t i = 0; i < 3; i++) {
@@ -176,7 +176,7 @@ static void test_same_bits_as_the_host(void **state) {
 
 static uint64_t count_leaks(const ClosedShape *closed, int width, uint32_t rays_each) {
   Shape mesh = closed->shape;
-  cdl_BvhPart part = {mesh.positions, mesh.indices, mesh.triangles, 0};
+  cdl_BvhPart part = {mesh.positions, mesh.indices, mesh.triangles, 0, 0, 0};
   cdl_BvhMesh one = {&part, 1};
   cdl_BvhPlacement placement = {.to_world = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}, .mask = 1};
   cdl_BvhOptions options = {.width = width};

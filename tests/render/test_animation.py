@@ -479,6 +479,7 @@ def test_hostile():
             check("pointer %.30s" % pointer, failed.status == 3, failed.message)
 
 
-main(test_assets, test_morph_targets, test_paths_and_modes, test_skins,
-     test_mirrored_skin_keeps_its_front, test_pointers, test_pointers_to_lights_and_lenses,
-     test_visibility, test_variants, test_which_animations, test_hostile)
+if __name__ == "__main__":
+    main(test_assets, test_morph_targets, test_paths_and_modes, test_skins,
+         test_mirrored_skin_keeps_its_front, test_pointers, test_pointers_to_lights_and_lenses,
+         test_visibility, test_variants, test_which_animations, test_hostile)

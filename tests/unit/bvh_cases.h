@@ -18,7 +18,7 @@ static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
 
 /* A tree over one shape, placed once and not moved. */
 static cdl_Bvh build_shape(const Shape *shape, int bins, int leaf_max) {
-  cdl_BvhPart part = {shape->positions, shape->indices, shape->triangles, 0};
+  cdl_BvhPart part = {shape->positions, shape->indices, shape->triangles, 0, 0, 0};
   cdl_BvhMesh mesh = {&part, 1};
   cdl_BvhPlacement placement = {.mask = CDL_MASK_ALL};
   cdl_BvhOptions options = {CDL_BVH_WIDTH, bins, leaf_max};
@@ -163,7 +163,7 @@ static void test_ties_go_to_the_smallest_number(void **state) {
   cdl_BvhPart parts[40];
   /* Forty copies of one triangle, numbered backwards. */
   for (uint32_t i = 0; i < 40; i++)
-    parts[i] = (cdl_BvhPart){shape.positions, shape.indices, 1, 100 + 39 - i};
+    parts[i] = (cdl_BvhPart){shape.positions, shape.indices, 1, 100 + 39 - i, 0, 0};
   cdl_BvhMesh mesh = {parts, 40};
   cdl_BvhPlacement placements[5] = {{.mask = 4}};
   cdl_BvhOptions options = {CDL_BVH_WIDTH, 0, 0};

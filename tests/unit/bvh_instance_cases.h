@@ -20,7 +20,7 @@ static void placed_open(Placed *placed) {
   placed->shapes[2] = shape_soup(50, 0.4f, 8);
   for (int i = 0; i < SHAPES; i++) {
     const Shape *s = placed->shapes + i;
-    parts[i] = (cdl_BvhPart){s->positions, s->indices, s->triangles, 0};
+    parts[i] = (cdl_BvhPart){s->positions, s->indices, s->triangles, 0, 0, 0};
     meshes[i] = (cdl_BvhMesh){parts + i, 1};
   }
   for (uint32_t i = 0; i < INSTANCES; i++) {
@@ -68,7 +68,7 @@ static void test_moved_closed_surfaces_do_not_leak(void **state) {
   (void)state;
   Random random = {51};
   Shape sphere = shape_sphere(2, v3_all(0.0f), 1.0f);
-  cdl_BvhPart part = {sphere.positions, sphere.indices, sphere.triangles, 0};
+  cdl_BvhPart part = {sphere.positions, sphere.indices, sphere.triangles, 0, 0, 0};
   cdl_BvhMesh mesh = {&part, 1};
   cdl_BvhOptions options = {CDL_BVH_WIDTH, 0, 0};
   for (int i = 0; i < 40; i++) {
