@@ -38,8 +38,12 @@ CDL_INLINE ConductorParams conductor_make(BsdfPoint point, float alpha_x, float 
                                 (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
   p.eta = eta;
   p.k = k;
+  p.diffuse = v3_all(0.0f);
+  p.compensated = 0.0f;
+#if CDL_ENERGY_COMPENSATION
   int compensated = (point.flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u && !p.facets.smooth;
   float missing = energy_metal_missing_mean(p.facets);
+  eta.x = math_after(missing, eta.x);
   vec3 fresnel = conductor_mean_fresnel(eta, k);
   float inverse = 1.0f / missing;
   float r = conductor_diffuse_color(fresnel.x, missing);
@@ -47,6 +51,9 @@ CDL_INLINE ConductorParams conductor_make(BsdfPoint point, float alpha_x, float 
   float b = conductor_diffuse_color(math_after(g, fresnel.z), missing);
   p.diffuse = v3_scale(v3(r, g, b), inverse);
   p.compensated = compensated ? 1.0f : 0.0f;
+  p.facets.alpha_x = math_after(p.diffuse.z, p.facets.alpha_x);
+  p.eta.x = math_after(p.diffuse.z, p.eta.x);
+#endif
   return p;
 }
 
@@ -66,11 +73,17 @@ CDL_INLINE float conductor_diffuse_share(ConductorParams p, vec3 wo) {
 CDL_INLINE BsdfValue conductor_value(ConductorParams p, vec3 wo, vec3 wi, float share) {
   MicrofacetLobe lobe = microfacet_evaluate(p.facets, wo, wi);
   vec3 fresnel = fresnel_conductor(lobe.cos_h, p.eta, p.k);
+  vec3 f_cos = v3_scale(fresnel, lobe.f_cos);
+  float pdf = lobe.bounded_pdf;
+#if CDL_ENERGY_COMPENSATION
+  p.facets.alpha_x = math_after(pdf, p.facets.alpha_x);
   float cosine_pdf = wo.z > 0.0f ? CDL_INV_PI * math_max(wi.z, 0.0f) : 0.0f;
   float missing = energy_metal_missing(p.facets, wi);
-  vec3 single = v3_scale(fresnel, lobe.f_cos);
-  vec3 f_cos = v3_madd(single, share * missing * cosine_pdf, p.diffuse);
-  float pdf = math_lerp(lobe.bounded_pdf, cosine_pdf, share);
+  f_cos = v3_madd(f_cos, share * missing * cosine_pdf, p.diffuse);
+  pdf = math_lerp(pdf, cosine_pdf, share);
+#else
+  (void)share;
+#endif
   float rough = p.facets.smooth ? 0.0f : 1.0f;
   return bsdf_value(v3_scale(f_cos, rough), rough * pdf);
 }
@@ -81,10 +94,12 @@ CDL_INLINE BsdfValue conductor_evaluate(ConductorParams p, vec3 wo, vec3 wi) {
 
 /* w picks the lobe. */
 CDL_INLINE BsdfSample conductor_sample(ConductorParams p, vec3 wo, float u, float v, float w) {
+  (void)w;
   float share = conductor_diffuse_share(p, wo);
-  vec3 scattered = sample_cosine_hemisphere(u, v);
-  vec3 reflected = microfacet_sample_reflection(p.facets, wo, math_after(scattered.x, u), v);
-  vec3 wi = v3_select(w < share, scattered, reflected);
+  vec3 wi = microfacet_sample_reflection(p.facets, wo, math_after(share, u), v);
+#if CDL_ENERGY_COMPENSATION
+  wi = v3_select(w < share, sample_cosine_hemisphere(math_after(wi.x, u), v), wi);
+#endif
   int smooth = p.facets.smooth;
   BsdfValue value = conductor_value(p, wo, wi, math_after(wi.z, share));
   vec3 rough = v3_scale(value.f_cos, bsdf_reciprocal(value.pdf));

@@ -99,6 +99,7 @@ CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   int above = wo.z > 0.0f && wi.z > 0.0f;
   float cos_o = math_max(wo.z, 1e-9f);
   float cos_i = math_max(wi.z, 1e-9f);
+  float bound = microfacet_bound(m, wo); /* before alpha is ordered: the same as in sampling */
   float d = microfacet_density(m, h);
   m.alpha_x = math_after(d, m.alpha_x);
   float lambda_o = microfacet_lambda(m, wo);
@@ -116,7 +117,7 @@ CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   lobe.pdf = above ? pdf : 0.0f;
   lobe.weight = above ? ratio : 0.0f;
   /* (1 + 2 Lambda) wo.z is the length of the stretched wo */
-  float gain = fma(2.0f, lambda_o, 1.0f + microfacet_bound(m, wo)) * (0.5f * g1);
+  float gain = fma(2.0f, lambda_o, 1.0f + bound) * (0.5f * g1);
   lobe.bounded_pdf = lobe.pdf / gain;
   lobe.bounded_weight = lobe.weight * gain;
   return lobe;

@@ -119,6 +119,9 @@ CDL_INLINE BsdfValue rough_dielectric_value(RoughDielectricParams p, vec3 wo, ve
                                             float share) {
   RoughDielectricLobe lobe = rough_dielectric_lobe(p, wo, wi);
   int below = wi.z < 0.0f;
+  float f_cos = lobe.f_cos;
+  float pdf = lobe.pdf;
+#if CDL_ENERGY_COMPENSATION
   float eta = p.glass.eta;
   float scale = lobe.through ? 1.0f / (eta * eta) : 1.0f;
   float cosine_pdf = CDL_INV_PI * math_abs(wi.z);
@@ -130,8 +133,11 @@ CDL_INLINE BsdfValue rough_dielectric_value(RoughDielectricParams p, vec3 wo, ve
   float diffuse = share * missing * side * cosine_pdf;
   float choice = rough_dielectric_choice(reflected, p.tint);
   float diffuse_pdf = (below ? 1.0f - choice : choice) * cosine_pdf;
-  float f_cos = lobe.f_cos + (wo.z > 0.0f ? diffuse : 0.0f);
-  float pdf = math_lerp(lobe.pdf, wo.z > 0.0f ? diffuse_pdf : 0.0f, share);
+  f_cos = f_cos + (wo.z > 0.0f ? diffuse : 0.0f);
+  pdf = math_lerp(pdf, wo.z > 0.0f ? diffuse_pdf : 0.0f, share);
+#else
+  (void)share;
+#endif
   vec3 tint = v3_select(below, p.glass.transmittance, v3_all(1.0f));
   float rough = p.smooth ? 0.0f : 1.0f;
   return bsdf_value(v3_scale(v3_mul(p.glass.channel, tint), rough * f_cos), rough * pdf);
