@@ -36,6 +36,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   snprintf(options, sizeof options, "-DCDL_BVH_WIDTH=%d", bvh_width);
   add_option(options, sizeof options, f->textures, "CDL_TEXTURES");
   add_option(options, sizeof options, f->float_textures, "CDL_FLOAT_TEXTURES");
+  add_option(options, sizeof options, f->normal_maps, "CDL_NORMAL_MAPS");
   add_option(options, sizeof options, f->emission_textures, "CDL_EMISSION_TEXTURES");
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");

@@ -26,6 +26,7 @@ typedef struct cdl_PackFeatures {
   uint32_t gltf_layers; /* CDL_GLTF_LAYER_* */
   int dispersion;       /* glass that disperses */
   int energy_compensation;
+  int normal_maps;
   int models[CDL_MODEL_COUNT]; /* 1: used; 2: and emissive */
 } cdl_PackFeatures;
 

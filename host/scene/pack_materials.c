@@ -141,7 +141,8 @@ static uint32_t material_flags(const cdl_SceneMaterial *from) {
          (from->alpha_mode == CDL_ALPHA_MASK ? CDL_MATERIAL_MASK : 0u) |
          (from->alpha_mode == CDL_ALPHA_BLEND ? CDL_MATERIAL_BLEND : 0u) |
          (is_boundary(from) ? CDL_MATERIAL_BOUNDARY : 0u) | (from->thin ? CDL_MATERIAL_THIN : 0u) |
-         (from->energy_compensation ? CDL_MATERIAL_ENERGY_COMPENSATED : 0u);
+         (from->energy_compensation ? CDL_MATERIAL_ENERGY_COMPENSATED : 0u) |
+         (from->normal_texture.texture != CDL_NONE ? CDL_MATERIAL_NORMAL_MAPPED : 0u);
 }
 
 static void pack_param_texture(const cdl_SceneParamTexture *from, cdl_ParamTexture *to) {
@@ -181,6 +182,7 @@ static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
                         m->normal_texture.texture != CDL_NONE ||
                         m->coat_normal_texture.texture != CDL_NONE || m->texture_count > 0;
   features->energy_compensation |= (m->flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u;
+  features->normal_maps |= (m->flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
   features->dispersion |=
       (m->model == CDL_MODEL_DIELECTRIC && m->param[CDL_DIELECTRIC_ABBE] > 0) ||
       (m->model == CDL_MODEL_ROUGH_DIELECTRIC && m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0);

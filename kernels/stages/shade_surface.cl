@@ -74,6 +74,32 @@ CDL_INLINE BsdfPoint load_point(Vertex at, CDL_GLOBAL const uint *path, CDL_GLOB
   return point;
 }
 
+/* What a bumpy surface would send into itself is mirrored by its plane and leaves after all: no
+ * light is lost and no fringe goes dark, however steep the normal map is. It is the microsurface of
+ * Schüssler et al. 2017, its second facet a mirror, without the shadows. A direction above the
+ * plane then stands for two, itself and its mirror image; densities and values of both add up. */
+#if defined(CDL_NORMAL_MAPS) && !CDL_SHADE_TRANSMITS
+#define CDL_SHADE_FOLDS 1
+#else
+#define CDL_SHADE_FOLDS 0
+#endif
+
+CDL_INLINE vec3 mirror_image(Vertex at, vec3 w) {
+  return v3_madd(w, -2.0f * v3_dot(w, at.geometric), at.geometric);
+}
+
+CDL_INLINE BsdfValue evaluate(Vertex at, BsdfParams p, vec3 wi) {
+  BsdfValue value = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, wi));
+#if CDL_SHADE_FOLDS
+  int folds = (at.flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
+  wi.x = math_after(value.pdf, wi.x);
+  BsdfValue image = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, mirror_image(at, wi)));
+  value.f_cos = v3_add(value.f_cos, v3_select(folds, image.f_cos, v3_all(0.0f)));
+  value.pdf += folds ? image.pdf : 0.0f;
+#endif
+  return value;
+}
+
 #if CDL_SHADE_LIT && defined(CDL_LIGHTS)
 /* The shadow ray of the light that was sampled, with what it adds if it arrives; returns the
  * density with which the model would have sampled it. */
@@ -81,12 +107,12 @@ CDL_INLINE float store_direct(Vertex at, BsdfParams p, vec3 throughput, CDL_GLOB
                               size_t stride, size_t i) {
   vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-  vec3 wi = frame_to_local(at.shading, to_light);
-  BsdfValue value = bsdf_evaluate(p, at.wo, wi);
+  BsdfValue value = evaluate(at, p, to_light);
   float side = v3_dot(to_light, at.geometric);
 #if CDL_SHADE_TRANSMITS
   int behind = side < 0.0f;
-  int lit = behind ? wi.z < 0.0f : wi.z > 0.0f;
+  float shading_side = v3_dot(to_light, at.shading.z);
+  int lit = behind ? shading_side < 0.0f : shading_side > 0.0f;
 #else
   int behind = 0;
   int lit = side > 0.0f;
@@ -103,6 +129,22 @@ CDL_INLINE float store_direct(Vertex at, BsdfParams p, vec3 throughput, CDL_GLOB
   state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
   state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
   return value.pdf;
+}
+#endif
+
+#if CDL_SHADE_FOLDS
+/* Density of the direction whose mirror image was sampled. */
+CDL_INLINE float evaluate_image(Vertex at, BsdfParams p, vec3 wi, float after) {
+  wi.x = math_after(after, wi.x);
+  int folds = (at.flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
+  BsdfValue image = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, mirror_image(at, wi)));
+  return folds ? image.pdf : 0.0f;
+}
+
+CDL_INLINE vec3 fold(Vertex at, vec3 wi) {
+  int below = v3_dot(wi, at.geometric) < 0.0f;
+  int folds = below & ((at.flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u);
+  return v3_select(folds, mirror_image(at, wi), wi);
 }
 #endif
 
@@ -125,6 +167,11 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
 #endif
     BsdfSample sample = bsdf_sample_model(p, at.wo, u, v, lobe);
     vec3 wi = frame_to_world(at.shading, sample.wi);
+#if CDL_SHADE_FOLDS
+    float image_pdf = evaluate_image(at, p, wi, sample.pdf);
+    sample.pdf += image_pdf;
+    wi = fold(at, wi);
+#endif
     float side = v3_dot(wi, at.geometric);
     int through = sample.transmitted;
     int right_side = through ? side < 0.0f : side > 0.0f;

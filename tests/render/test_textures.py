@@ -10,7 +10,7 @@ import numpy as np
 from support.render import render
 from support.scene import CLAMP, MIRROR, REPEAT, Scene
 from support.shapes import look_at, quad, scale, turn
-from support.verdict import agrees, main, near
+from support.verdict import agrees, check, main, near
 
 RANDOM = np.random.default_rng(11)
 CODES = RANDOM.integers(0, 256, (8, 8, 4)).astype(np.uint8)
@@ -258,21 +258,56 @@ def test_normal_map():
         near(name, lit(strength, matrix, given) / want, 1, 2e-3)
 
 
-def test_normal_map_is_a_tilt():
-    """Under a sky of 1 a tilted normal loses what its lobe has below the surface: (1 + cos) / 2
-    of the light is left, whatever the direction of the tilt."""
-    codes = np.array([[[178, 102, 230]]], np.uint8)
-    texel = 2 * np.array((178, 102, 230)) / 255 - 1
-    cosine = texel[2] / np.linalg.norm(texel)
+def bumps(material, sky=1.0):
+    """A picture of a square whose normals point anywhere, up to 70 degrees off, seen aslant."""
+    rng = np.random.default_rng(5)
+    tilt, turned = np.radians(rng.uniform(0, 70, (16, 16))), rng.uniform(0, 2 * np.pi, (16, 16))
+    normals = np.stack([np.sin(tilt) * np.cos(turned), np.sin(tilt) * np.sin(turned),
+                        np.cos(tilt), np.ones_like(tilt)], -1)
+    s = Scene()
+    codes = np.round((normals + 1) / 2 * 255).astype(np.uint8)
+    s.add(square(), material(s, s.texture(codes, nearest=True)))
+    s.environment(radiance=sky)
+    s.camera(look_at((2, 0.5, 1), (0, 0, 0)), half_height=0.2)
+    return render(s, (32, 32), 256, 1)
+
+
+def test_normal_maps_keep_the_light():
+    """However steep: white under a sky of 1 is 1 everywhere, for lobes wide and narrow, and by
+    light sampling as well as without."""
+    def white(s, normals):
+        return s.material({"model": "diffuse", "reflectance": [1, 1, 1]}, normalTexture=normals)
+
+    def mirror(s, normals):
+        return s.material({"model": "mirror"}, normalTexture=normals)
+
+    def metal(s, normals):  # of an index that reflects all, and what facets lose is given back
+        return s.material({"model": "conductor", "eta": 0, "k": 1, "alpha": 0.3,
+                           "energyCompensation": True}, normalTexture=normals)
+
+    for name, material, tolerance in (("diffuse", white, 0.002), ("a mirror", mirror, 1e-6),
+                                      ("metal", metal, 0.01)):
+        picture = bumps(material)
+        agrees("%s with bumps" % name, picture, 1, tolerance)
+        check("%s has no dark fringe" % name, picture.rgb.min() > 0.75, "%g" % picture.rgb.min())
+
+
+def test_normal_map_from_below():
+    """Light that a steep facet sees in the mirror of the surface counts as if from there."""
+    codes = np.array([[[255, 128, 160]]], np.uint8)
+    texel = 2 * np.array((255, 128, 160)) / 255 - 1
+    normal = texel / np.linalg.norm(texel)
+    sun = np.array((np.sin(1.4), 0, np.cos(1.4)))
     s = Scene()
     white = s.material({"model": "diffuse", "reflectance": [1, 1, 1]},
                        normalTexture=s.texture(codes))
     screen(s, square(), white)
-    s.environment(radiance=1)
-    agrees("a tilted normal under a sky", render(s, (32, 32), 256, 1), (1 + cosine) / 2)
+    s.light("directional", (np.pi, np.pi, np.pi), look_at(sun, (0, 0, 0)))
+    want = max(normal @ sun, 0) + max(normal @ (sun * (1, 1, -1)), 0)
+    near("light from both sides of the plane", render(s, (32, 32), 16, 1).rgb.mean(), want, 2e-3)
 
 
 if __name__ == "__main__":
     main(test_texels, test_wrapping, test_transform, test_second_coordinates, test_vertex_colors,
          test_alpha_cutoff, test_data_textures, test_emissive_texture, test_normal_map,
-         test_normal_map_is_a_tilt)
+         test_normal_maps_keep_the_light, test_normal_map_from_below)
