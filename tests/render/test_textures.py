@@ -285,10 +285,11 @@ def test_normal_maps_keep_the_light():
         return s.material({"model": "conductor", "eta": 0, "k": 1, "alpha": 0.3,
                            "energyCompensation": True}, normalTexture=normals)
 
-    for name, material, tolerance in (("diffuse", white, 0.002), ("a mirror", mirror, 1e-6),
-                                      ("metal", metal, 0.01)):
+    for name, material, loss in (("diffuse", white, 0.002), ("a mirror", mirror, 1e-6),
+                                 ("metal", metal, 0.01)):
         picture = bumps(material)
-        agrees("%s with bumps" % name, picture, 1, tolerance)
+        mean = picture.rgb.mean()
+        check("%s with bumps" % name, 1 - loss < mean < 1.002, "%g" % mean)
         check("%s has no dark fringe" % name, picture.rgb.min() > 0.75, "%g" % picture.rgb.min())
 
 
