@@ -135,8 +135,13 @@ static cdl_Status add_shape(Geometry *g, const cdl_SceneMesh *mesh, const float 
   return CDL_OK;
 }
 
+/* A clear coat over an emitter makes its radiance depend on the direction. */
+static int is_coated(const cdl_Material *m) {
+  return m->model == CDL_MODEL_GLTF_LAYERED && m->param[CDL_GLTF_LAYERED_CLEARCOAT] > 0;
+}
+
 /* Notes what the kernels will meet; emissive shapes get a light a triangle, per instance. Those
- * that move get none: paths find them. */
+ * that move or are coated get none: paths find them. */
 static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, int moves,
                           uint32_t *first_light) {
   const cdl_Material *material = &g->pack->materials[mesh->material];
@@ -146,7 +151,7 @@ static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, int moves,
   features->passable |= material_passable(material);
   features->opacity |= material_passable(material) && material->model != CDL_MODEL_INTERFACE;
   *first_light = CDL_NONE;
-  if (!emissive || moves) return;
+  if (!emissive || moves || is_coated(material)) return;
   *first_light = (uint32_t)g->pack->light_count;
   g->pack->light_count += mesh->triangle_count;
   features->triangle_lights = 1;

@@ -3,6 +3,7 @@
 
 #include "abi/bvh.h"
 #include "abi/params.h"
+#include "bsdf/clearcoat.h"
 #include "lib/material.h"
 #include "lib/state.h"
 #include "light/triangle.h"
@@ -30,6 +31,13 @@ __kernel void emit(CDL_CONSTANT cdl_Wave *restrict wave,
                               state_float(path, CDL_PATH_HIT_V, stride, i));
 #endif
     vec3 radiance = material_emission(material, uv, textures, texels, srgb);
+#ifdef CDL_GLTF_CLEARCOAT
+    float coat = state_float(work, CDL_WORK_PARAM + CDL_GLTF_LAYERED_CLEARCOAT, stride, i);
+    vec3 coat_normal = state_vec3(work, CDL_WORK_COAT_NORMAL, stride, i);
+    float coat_cosine = v3_dot(coat_normal, state_vec3(path, CDL_PATH_DIRECTION, stride, i));
+    float passes = 1.0f - clearcoat_fresnel(coat, coat_cosine);
+    radiance = v3_scale(radiance, material->model == CDL_MODEL_GLTF_LAYERED ? passes : 1.0f);
+#endif
     uint front = state_uint(work, CDL_WORK_VERTEX, stride, i) & CDL_VERTEX_FRONT;
     int lit = (front | (material->flags & CDL_MATERIAL_DOUBLE_SIDED)) != 0u;
 

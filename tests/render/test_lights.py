@@ -218,7 +218,24 @@ def test_zero_light():
     check("no bad samples", picture.stats["bad_samples"] == 0)
 
 
+def test_coated_emitter():
+    """A clear coat keeps what it reflects of the light from below (KHR_materials_clearcoat), seen
+    directly and by what it lights."""
+    for cosine in (1.0, 0.5, 0.2):
+        s = Scene()
+        s.add(quad((0, 0, 0), (1, 0, 0), (0, 1, 0)),
+              s.material(base=(0, 0, 0, 1), metallic=0, roughness=1, emission=(0.5, 0.5, 0.5),
+                         extensions={"KHR_materials_clearcoat": {"clearcoatFactor": 0.8}}))
+        s.environment(radiance=0)
+        s.camera(look_at((3 * np.sqrt(1 - cosine ** 2), 0, 3 * cosine), (0, 0, 0)),
+                 half_height=0.1)
+        fresnel = 0.04 + 0.96 * (1 - cosine) ** 5
+        near("an emitter under a coat at cosine %g" % cosine, render(s, (8, 8), 16, 0).rgb.mean(),
+             0.5 * (1 - 0.8 * fresnel), 1e-4)
+
+
 if __name__ == "__main__":
     main(test_quad_light, test_sphere_light, test_point_light, test_spot_light,
          test_directional_light, test_constant_sky, test_all_lights, test_textured_emission,
-         test_mirrored_and_instanced_lamps, test_sides_of_emission, test_zero_light)
+         test_mirrored_and_instanced_lamps, test_sides_of_emission, test_zero_light,
+         test_coated_emitter)
