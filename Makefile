@@ -1,4 +1,4 @@
-# Candela: deps · all · demo · test · bench · check · soak · install · clean
+# Candela: deps · all · demo · gallery · test · bench · check · soak · install · clean
 #
 # `make demo` and `make test` are all that a newcomer needs. Everything that is built lies in $(B).
 
@@ -11,8 +11,8 @@ VERSION := $(shell sed -n 's/^.define CDL_VERSION "\(.*\)"/\1/p' host/candela.h)
 .DEFAULT_GOAL := all
 .DELETE_ON_ERROR:
 .SUFFIXES:
-.PHONY: deps all demo test bench check soak install clean \
-  run-demo run-test run-bench run-check run-soak run-host format-check lint tests
+.PHONY: deps all demo gallery test bench check soak install clean \
+  run-demo run-gallery run-test run-bench run-check run-soak run-host format-check lint tests
 
 ifeq ($(MAKELEVEL),0)
 # A -j on the command line wins.
@@ -25,6 +25,7 @@ deps:
 	@scripts/setup.sh build test bench check
 
 demo: ; @scripts/setup.sh build && $(MAKE) --no-print-directory run-demo
+gallery: ; @scripts/setup.sh build && $(MAKE) --no-print-directory run-gallery
 test: ; @scripts/setup.sh build test && $(MAKE) --no-print-directory run-test
 soak: ; @scripts/setup.sh build test && $(MAKE) --no-print-directory run-soak
 bench: ; @scripts/setup.sh build bench && $(MAKE) --no-print-directory run-bench
@@ -36,7 +37,7 @@ clean:
 # --- How things are compiled.
 
 PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf draco
-NEEDS_COMPILER := $(filter-out deps demo test bench check soak clean,$(or $(MAKECMDGOALS),all))
+NEEDS_COMPILER := $(filter-out deps demo gallery test bench check soak clean,$(or $(MAKECMDGOALS),all))
 ifneq ($(NEEDS_COMPILER),)
 PACKAGE_CFLAGS := $(shell pkg-config --cflags $(PACKAGES))
 PACKAGE_LIBS := $(shell pkg-config --libs $(PACKAGES))
@@ -163,6 +164,10 @@ run-check: format-check lint
 run-demo: all
 	@$(B)/candela render scenes/demo.gltf -o $(B)/demo.png --size 960x --spp 96 --tonemap aces --profile
 	@echo "The picture is in $(B)/demo.png"
+
+# A page of all materials, in one file.
+run-gallery: all
+	@CANDELA=$(B)/candela scripts/gallery.py -o $(B)/gallery.html
 
 # --- Installation.
 
