@@ -68,8 +68,16 @@ static cdl_Status check(const cdl_Log *log, const cdl_Scene *scene, uint32_t ind
 }
 
 static int disperses(const cdl_Material *m) {
-  if (m->model == CDL_MODEL_DIELECTRIC) return m->param[CDL_DIELECTRIC_ABBE] > 0;
-  return 0;
+  switch (m->model) {
+  case CDL_MODEL_DIELECTRIC:
+    return m->param[CDL_DIELECTRIC_ABBE] > 0;
+  case CDL_MODEL_ROUGH_DIELECTRIC:
+    return m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0;
+  case CDL_MODEL_GLTF_LAYERED:
+    return m->param[CDL_GLTF_LAYERED_DISPERSION] > 0;
+  default:
+    return 0;
+  }
 }
 
 /* The material as renders have it. */
