@@ -74,7 +74,7 @@ static int on_progress(void *user, uint64_t done, uint64_t total, double seconds
 static cdl_Status run(Render *r) {
   const RenderOptions *o = &r->options;
   if (o->checkpoint_every > 0) r->next_checkpoint = clock_now() + o->checkpoint_every;
-  cli_catch_signals();
+  if (cli_interrupted()) return CDL_INTERRUPTED;
   cdl_Status status = cdl_session_render(r->session, on_progress, r);
   cli_progress_erase();
   if (status == CDL_INTERRUPTED && r->checkpointed) return r->checkpointed;
@@ -142,6 +142,7 @@ static cdl_Status finish(Render *r, cdl_Status rendered) {
 int cli_render(int argc, char **argv) {
   Render r = {0};
   render_parse(argc, argv, &r.options);
+  cli_catch_signals();
   cdl_Status status = check_outputs(&r.options);
   if (!status) status = load_scene(&r);
   if (!status) status = start_session(&r);

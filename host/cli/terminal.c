@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 #include <unistd.h>
 
 #include "core/clock.h"
@@ -98,11 +99,20 @@ void cli_progress_samples(uint64_t done, uint64_t total, double seconds, double 
   show_line(line);
 }
 
+/* Those who stop jobs may send a signal twice, to the program and to its group. */
+#define SIGNAL_AGAIN_SECONDS 1
+
 static volatile sig_atomic_t interrupted;
 
 static void on_signal(int number) {
+  static struct timespec first;
+  struct timespec now;
+  clock_gettime(CLOCK_MONOTONIC, &now);
+  if (!interrupted) first = now;
   interrupted = number;
-  signal(number, SIG_DFL); /* the next one ends the program */
+  if (now.tv_sec - first.tv_sec <= SIGNAL_AGAIN_SECONDS) return;
+  signal(number, SIG_DFL);
+  raise(number);
 }
 
 void cli_catch_signals(void) {
