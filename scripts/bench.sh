@@ -44,4 +44,7 @@ else
   "$python" "$peers/compare.py" --scenes "$work/scenes" --out "$work/table.json" \
     --python-cycles "$CANDELA_PEERS_ENV/bvenv/bin/python" \
     --renderers "${CANDELA_PEERS:-mitsuba,luxcore,cycles},candela:$CANDELA"
+  echo "# Materials"
+  echo
+  "$root/scripts/bench_materials.py" --mitsuba "$python"
 fi
