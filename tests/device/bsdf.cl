@@ -60,6 +60,11 @@ CDL_INLINE uint test_value_faults(BsdfValue e) {
   return test_sound3(e.f_cos) & test_sound(e.pdf) ? 0u : BSDF_FAULT_VALUE;
 }
 
+/* A black weight says that there is no such path, whatever may come from its direction. */
+CDL_INLINE int test_is_refused(BsdfSample s, BsdfValue e) {
+  return v3_max(s.weight) == 0.0f && v3_max(e.f_cos) > 0.0f;
+}
+
 /* A sample that has a density, against the evaluation of its direction. */
 CDL_INLINE uint test_same_faults(BsdfSample s, BsdfValue e, float tolerance) {
   vec3 f_cos = v3_scale(s.weight, s.pdf);
@@ -67,7 +72,7 @@ CDL_INLINE uint test_same_faults(BsdfSample s, BsdfValue e, float tolerance) {
              test_near(f_cos.z, e.f_cos.z, tolerance);
   uint faults = test_near(s.pdf, e.pdf, tolerance) ? 0u : BSDF_FAULT_SAME_PDF;
   faults |= same ? 0u : BSDF_FAULT_SAME_VALUE;
-  return s.pdf > 0.0f ? faults : 0u;
+  return s.pdf > 0.0f && !test_is_refused(s, e) ? faults : 0u;
 }
 
 /* The cell of a unit vector: bsdf_chart.h. */
@@ -100,7 +105,7 @@ __kernel void sample(__global const BsdfSetup *setup, __global const uint *param
     uint cell = s.wi.z > 0.0f ? above : below;
     uint faults = test_sample_faults(s, setup->weight_max) | test_value_faults(e);
     float flux = s.eta * s.eta;
-    ROW(0) = s.pdf > 0.0f ? cell : BSDF_CELL_NONE;
+    ROW(0) = s.pdf > 0.0f && !test_is_refused(s, e) ? cell : BSDF_CELL_NONE;
     ROW(1) = as_uint(v3_max(s.weight) * flux);
     ROW(2) = faults | test_same_faults(s, e, setup->tolerance);
   }

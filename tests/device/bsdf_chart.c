@@ -2,7 +2,7 @@
 
 #include <math.h>
 
-enum { MAX_DEPTH = 8 };
+enum { MAX_DEPTH = 6 };
 
 void bsdf_chart_init(BsdfChart *chart, const double middle[3], double width) {
   double length = sqrt(middle[0] * middle[0] + middle[1] * middle[1] + middle[2] * middle[2]);
@@ -14,8 +14,9 @@ void bsdf_chart_init(BsdfChart *chart, const double middle[3], double width) {
     chart->axes[1][i] = z[j] * x[k] - z[k] * x[j];
     chart->axes[2][i] = z[i];
   }
-  chart->spread = fmin(2 * width * width * z[2] * z[2], 1);
   chart->aspect = fmin(fmax(z[2], width), 1);
+  double least = width * fmax(z[2], 1e-3); /* where it grazes, it is narrow near the horizon */
+  chart->spread = fmin(2 * least * least, 1);
   chart->range = log1p((1 + t) / chart->spread); /* the farthest point of the horizon */
 }
 
@@ -77,21 +78,29 @@ static double refine(const BsdfChart *c, double x0, double x1, double y0, double
   double parts[4], sum = 0;
   for (int i = 0; i < 4; i++)
     sum += parts[i] = gauss(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1]);
-  if (depth == MAX_DEPTH || fabs(sum - whole) <= fmax(3e-4 * sum, 1e-7)) return sum;
+  int done = fabs(sum - whole) <= fmax(3e-4 * sum, 1e-7);
+  if (depth == MAX_DEPTH || (done && depth >= c->least_depth)) return sum;
   sum = 0;
   for (int i = 0; i < 4; i++)
     sum += refine(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1], parts[i], depth + 1);
   return sum;
 }
 
+static double piece(const BsdfChart *c, double x0, double x1, double y0, double y1) {
+  return refine(c, x0, x1, y0, y1, gauss(c, x0, x1, y0, y1), 0);
+}
+
 double bsdf_chart_integrate(const BsdfChart *chart, double cells[BSDF_CELLS]) {
   double total = 0;
+  /* The ring that touches the horizon divides the cells that it runs through. */
+  double touch = log1p((1 - chart->axes[1][2]) / chart->spread) / chart->range;
 #pragma omp parallel for schedule(dynamic, 16) reduction(+ : total)
   for (unsigned i = 0; i < BSDF_CELLS; i++) {
     double x0 = (double)(i / BSDF_CELLS_Y) / BSDF_CELLS_X, x1 = x0 + 1.0 / BSDF_CELLS_X;
     double y0 = (double)(i % BSDF_CELLS_Y) / BSDF_CELLS_Y, y1 = y0 + 1.0 / BSDF_CELLS_Y;
-    double whole = gauss(chart, x0, x1, y0, y1);
-    cells[i] = refine(chart, x0, x1, y0, y1, whole, 0);
+    double middle = touch > x0 && touch < x1 ? touch : x1;
+    cells[i] = piece(chart, x0, middle, y0, y1);
+    if (middle < x1) cells[i] += piece(chart, middle, x1, y0, y1);
     total += cells[i];
   }
   return total;

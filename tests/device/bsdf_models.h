@@ -13,10 +13,16 @@
 #define BSDF_MODELS(MODEL)                                                                         \
   MODEL(diffuse, DiffuseParams, 0, 0, 1.0f)                                                        \
   MODEL(mirror, MirrorParams, 0, 0, 1.0f)                                                          \
-  MODEL(conductor, ConductorParams, 0, BECKMANN | SEPARABLE, 1.001f)                               \
-  MODEL(dielectric, DielectricParams, 1, 0, 11.2f)                                                 \
+  MODEL(conductor, ConductorParams, 0, BECKMANN | SEPARABLE | COMPENSATED, 1e6f)                   \
+  MODEL(dielectric, DielectricParams, 1, THIN, 1e6f)                                               \
   MODEL(retroreflector, RetroreflectorParams, 0, BECKMANN | SEPARABLE, 1.001f)                     \
-  MODEL(gltf, GltfParams, 0, 0, 30.0f)
+  MODEL(gltf, GltfParams, 0, 0, 30.0f)                                                             \
+  MODEL(oren_nayar, OrenNayarParams, 0, 0, 10.0f)                                                  \
+  MODEL(plastic, PlasticParams, 0, BECKMANN | SEPARABLE, 100.0f)                                   \
+  MODEL(rough_dielectric, RoughDielectricParams, 1, BECKMANN | SEPARABLE | COMPENSATED | THIN,     \
+        1e6f)                                                                                      \
+  MODEL(disney, DisneyParams, 1, 0, 1000.0f)                                                       \
+  MODEL(gltf_layered, GltfLayeredParams, 1, 0, 1e6f)
 
 #define BECKMANN CDL_MATERIAL_BECKMANN
 #define SEPARABLE CDL_MATERIAL_SEPARABLE

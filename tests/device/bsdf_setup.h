@@ -3,13 +3,23 @@
 #ifndef CANDELA_TESTS_BSDF_SETUP_H
 #define CANDELA_TESTS_BSDF_SETUP_H
 
+/* glTF's material with all its layers. */
+#define CDL_GLTF_ANISOTROPY
+#define CDL_GLTF_CLEARCOAT
+#define CDL_GLTF_SHEEN
+#define CDL_GLTF_IRIDESCENCE
+#define CDL_GLTF_TRANSMISSION
+#define CDL_GLTF_DIFFUSE_TRANSMISSION
+#define CDL_GLTF_RETROREFLECTION
+#define CDL_GLTF_DISPERSION
+
 #define BSDF_STRIP 16u /* items of a work-item, neighbours */
 
 /* Cells of a chart of the directions on one side of the surface: bsdf_chart.h. The last cell of all
  * holds the samples without a density: delta lobes, and directions that came out on the wrong side.
  */
-#define BSDF_CELLS_X 24u
-#define BSDF_CELLS_Y 32u
+#define BSDF_CELLS_X 20u
+#define BSDF_CELLS_Y 24u
 #define BSDF_CELLS (BSDF_CELLS_X * BSDF_CELLS_Y)
 #define BSDF_CELL_NONE (2u * BSDF_CELLS)
 
