@@ -116,10 +116,12 @@ static cdl_Status read_coat_normal(Builder *builder, const char *at, const json_
   return build_texture_ref(builder, at, normal, &material->coat_normal_texture);
 }
 
-/* Clear and smooth glass without other layers is a dielectric of ours, with Fresnel's equations in
- * the place of Schlick's approximation. */
+/* Clear and smooth glass around a volume, without other layers, is a dielectric of ours, with
+ * Fresnel's equations in the place of Schlick's approximation. A sheet is not: ours reflects with
+ * both of its sides, the extension's with one, so a trace of roughness would halve what it sends
+ * back. */
 static int is_plain_glass(const cdl_SceneMaterial *m) {
-  int plain = m->param[WORD(TRANSMISSION)] >= 1 && m->param[WORD(ROUGHNESS)] <= 0 &&
+  int plain = !m->thin && m->param[WORD(TRANSMISSION)] >= 1 && m->param[WORD(ROUGHNESS)] <= 0 &&
               m->param[WORD(METALLIC)] <= 0 && m->texture_count == 0 && m->param[WORD(IOR)] >= 1 &&
               m->param[WORD(SPECULAR)] == 1;
   for (uint32_t c = 0; c < 3; c++) plain &= m->param[WORD(SPECULAR_COLOR) + c] == 1;
@@ -132,7 +134,7 @@ static void become_glass(cdl_SceneMaterial *material) {
   for (uint32_t i = 0; i < CDL_PARAM_MAX; i++) material->param[i] = 0;
   material->model = CDL_MODEL_DIELECTRIC;
   material->param[CDL_DIELECTRIC_IOR] = ior;
-  material->param[CDL_DIELECTRIC_ABBE] = dispersed > 0 && !material->thin ? 20 / dispersed : 0;
+  material->param[CDL_DIELECTRIC_ABBE] = dispersed > 0 ? 20 / dispersed : 0;
 }
 
 static void choose_model(cdl_SceneMaterial *material) {

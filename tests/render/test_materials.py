@@ -121,8 +121,9 @@ def test_compensation():
         kinds += [("metal %s" % alpha, cdl("conductor", **LOSSLESS, **more)),
                   ("Beckmann metal %s" % alpha, cdl("conductor", distribution="beckmann",
                                                     **LOSSLESS, **more)),
-                  ("glass %s" % alpha, cdl("dielectric", **more)),
                   ("thin glass %s" % alpha, cdl("dielectric", thin=True, **more))]
+        if alpha in (0.1, 0.5):
+            kinds.append(("glass %s" % alpha, cdl("dielectric", **more)))
     for (name, _), parts in zip(kinds, furnace(kinds, 4, 256, FINE)):
         for part, (mean, error) in zip(("", ", the rim"), parts):
             check("compensated %s%s" % (name, part), np.all(mean <= 1.0005 + 3 * error) and

@@ -44,10 +44,11 @@ def layers(**values):
 
 
 class Cells(Scene):
-    def __init__(self, columns, rows, pixels=8):
+    def __init__(self, columns, rows, pixels=8, depth=DEPTH):
+        """`depth` is to be greater where light goes almost straight through."""
         super().__init__()
         self.columns, self.rows, self.pixels, self.cell = columns, rows, pixels, -1
-        self.height = DEPTH * columns * rows
+        self.depth, self.height = depth, depth * columns * rows
         self.use_every_feature((0, -rows - 3, 0))
         self.use_every_material((0, -rows - 3, 0))
 
@@ -64,7 +65,7 @@ class Cells(Scene):
         cell = self.cell if cell is None else cell
         column, row = cell % self.columns, cell // self.columns
         return move(2 * column + 1 - self.columns, self.rows - 1 - 2 * row,
-                    DEPTH * cell - self.height / 2)
+                    self.depth * cell - self.height / 2)
 
     def next(self):
         self.cell += 1
