@@ -34,16 +34,47 @@ static cdl_Status build_failed(const cdl_Device *device, cl_program program, con
                   cl_error_name(code));
 }
 
+/* Whether a program's text has the macro that an option -DNAME or -DNAME=VALUE defines. */
+static int option_matters(const char *option, size_t length, const char *text) {
+  char macro[64];
+  if (length < 3 || strncmp(option, "-D", 2) != 0) return 1;
+  size_t size = strcspn(option + 2, "= ");
+  if (size >= sizeof macro) return 1;
+  memcpy(macro, option + 2, size);
+  macro[size] = 0;
+  return strstr(text, macro) != NULL;
+}
+
+/* The device's options, without definitions that the text does not know: scenes that differ in what
+ * it does not look at share the compiled kernel. */
+static char *scene_options(const cdl_Device *device, const char *text) {
+  char *kept = calloc(1, strlen(device->options) + 2);
+  size_t used = 0;
+  for (const char *at = device->options; kept && *at;) {
+    size_t blank = strspn(at, " "), length = strcspn(at + blank, " ");
+    at += blank;
+    if (length && option_matters(at, length, text)) {
+      kept[used++] = ' ';
+      memcpy(kept + used, at, length);
+      used += length;
+    }
+    at += length;
+  }
+  return kept;
+}
+
 /* The options of a program; exact arithmetic also needs the pragma in lib/portable.h. `name` is
  * that of its only kernel; NULL: it has several. */
 static char *build_options(const cdl_Device *device, const char *name, const char *options,
-                           size_t strip) {
-  char *all = NULL;
+                           size_t strip, const char *text) {
+  char *all = NULL, *scene = scene_options(device, text);
   const char *divide =
       device->info.has_correct_divide ? " -cl-fp32-correctly-rounded-divide-sqrt" : "";
-  int length =
-      asprintf(&all, "-cl-std=CL1.2 -DCDL_STRIP=%zu%s%s%s %s %s", strip, divide,
-               name ? " -DCDL_KERNEL_NAME=" : "", name ? name : "", options, device->options);
+  int length = !scene
+                   ? -1
+                   : asprintf(&all, "-cl-std=CL1.2 -DCDL_STRIP=%zu%s%s%s %s%s", strip, divide,
+                              name ? " -DCDL_KERNEL_NAME=" : "", name ? name : "", options, scene);
+  free(scene);
   return length < 0 ? NULL : all;
 }
 
@@ -73,7 +104,7 @@ static cdl_Status build_text(cdl_Device *device, const char *text, const char *n
                              const char *options, size_t strip, cl_kernel *kernel) {
   cl_int code;
   cl_program program = NULL;
-  char *all = build_options(device, name, options, strip);
+  char *all = build_options(device, name, options, strip, text);
   if (!all) return log_fail(device->log, CDL_DEVICE, "not enough memory to build %s", name);
   cdl_Status status = build_program(device, text, all, &program, &code);
   if (!status && code) status = build_failed(device, program, name, code);
@@ -164,11 +195,12 @@ static cl_program build_group(cdl_Device *device, cdl_KernelId first) {
   const cdl_Log *log = device->log;
   cl_program program = NULL;
   cl_int code = 0;
-  char *text = NULL, *includes = group_includes(first);
-  char *options = build_options(device, NULL, kernel_rows[first].options, row_strip(device, first));
+  char *text = NULL, *options = NULL, *includes = group_includes(first);
   device->log = &silent;
-  if (includes && options && !source_flatten_text(&silent, "kernels", includes, &text))
-    build_program(device, text, options, &program, &code);
+  if (includes && !source_flatten_text(&silent, "kernels", includes, &text))
+    options =
+        build_options(device, NULL, kernel_rows[first].options, row_strip(device, first), text);
+  if (options) build_program(device, text, options, &program, &code);
   device->log = log;
   if (program && code) {
     clReleaseProgram(program);
