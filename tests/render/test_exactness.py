@@ -61,13 +61,14 @@ def same(what, name, options=(), environment=None, device=None):
 
 def test_scenes_show_something():
     """Hashes of black or broken pictures would prove nothing; seeds matter."""
-    for name in ("everything", "fog", "plain"):
+    for name in ("everything", "layers", "fog", "plain"):
         picture = whole(name)
         check("%s is not dark" % name, 0.05 < picture.rgb.mean() < 5, "%g" % picture.rgb.mean())
         check("%s has no bad samples" % name, picture.stats["bad_samples"] == 0)
         other = render(scene(name), SIZE, SPP, DEPTH, 6, None)
         check("%s depends on the seed" % name, other.sha256 != picture.sha256)
-    kernels = {k["name"] for name in ("everything", "fog") for k in whole(name).stats["kernels"]}
+    kernels = {k["name"] for name in ("everything", "layers", "fog")
+               for k in whole(name).stats["kernels"]}
     listed = os.path.join(os.path.dirname(os.path.abspath(__file__)),
                           "../../host/device/kernels.def")
     with open(listed) as file:
@@ -86,7 +87,7 @@ def cpu_has(flag):
 
 
 def test_pocl():
-    for name in ("everything", "fog", "plain"):
+    for name in ("everything", "layers", "fog", "plain"):
         same("SSE2", name, environment={"POCL_KERNELLIB_NAME": "sse2"}, device="athlon64")
     if cpu_has("avx2"):
         same("AVX2", "everything", environment={"POCL_KERNELLIB_NAME": "avx2"}, device="haswell")
@@ -94,7 +95,7 @@ def test_pocl():
         skip("AVX2", "this processor has none")
     same("plain loops", "everything", environment={"POCL_WORK_GROUP_METHOD": "loops"})
     same("the basic device", "fog", environment={"POCL_DEVICES": "basic"}, device="basic")
-    for name in ("everything", "fog", "plain"):
+    for name in ("everything", "layers", "fog", "plain"):
         for threads in "12":
             same("%s threads" % threads, name, environment={"POCL_MAX_PTHREAD_COUNT": threads})
 
@@ -104,13 +105,14 @@ def test_rusticl():
     if "llvmpipe" not in listed:
         skip("rusticl", "no llvmpipe device; mesa-opencl-icd has it")
         return
-    for name in ("plain", "fog", "without_gloss") + (("everything",) if SOAK else ()):
+    more = ("everything", "layers") if SOAK else ()
+    for name in ("plain", "fog", "without_gloss") + more:
         same("rusticl", name, ("--device", "rusticl"), RUSTICL, "llvmpipe")
 
 
 def test_trees():
     """Neither layout of the tree nor the reports change a bit."""
-    for name in ("everything", "plain"):
+    for name in ("everything", "layers", "plain"):
         for width in "28":
             same("--bvh %s" % width, name, ("--bvh", width))
     same("with --profile and --trace", "plain", ("--profile", "--trace", scratch(".json")))

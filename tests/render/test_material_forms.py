@@ -8,9 +8,10 @@ what passes."""
 import numpy as np
 
 from support.cells import Cells, direction, front_and_back, layers, tilted
+from support.color import TO_RGB, matching_functions
 from support.optics import fresnel_dielectric, ggx_density, hemisphere
 from support.shapes import quad
-from support.verdict import agrees, check, main, near
+from support.verdict import main, near
 
 SUN = 50          # degrees to the right of the camera
 BEHIND = 130
@@ -30,9 +31,14 @@ class Lit(Cells):
 
     def expect(self, name, material, tilt, f):
         """f(wo, wi): in the frame of the square, whose normal is +Z and whose tangent is +X."""
+        self.hold(name, material, tilt, self.lit(tilt, f))
+
+    def lit(self, tilt, f):
         back = tilted(-tilt)[:3, :3]
         wo, wi = back @ direction(0), back @ direction(self.degrees)
-        want = np.pi * np.asarray(f(wo, wi), float) * abs(wi[2])
+        return np.pi * np.asarray(f(wo, wi), float) * abs(wi[2])
+
+    def hold(self, name, material, tilt, want):
         wide = quad((0, 0, 0), (0.9 / np.cos(np.radians(tilt)), 0, 0), (0, 0.9, 0))
         cell = self.show(wide, self.material(**material), tilted(tilt))
         self.cases.append(("%s, tilted by %d" % (name, tilt), cell, want))
@@ -138,6 +144,41 @@ def test_clearcoat():
     lit.judge()
 
 
+def bent(scene, degrees):
+    """A normal map that turns the normal from the camera to the right."""
+    n = np.array([np.sin(np.radians(degrees)), 0, np.cos(np.radians(degrees))])
+    return scene.texture(np.rint((n + 1) / 2 * 65535).astype(np.uint16)[None, None])
+
+
+def test_normals_of_layers():
+    """clearcoatNormalTexture bends the coat alone and normalTexture the base alone: a bent lobe is
+    that of a square which is tilted as much. The base's is so within 1 % only: what would leave
+    into the surface is reflected there."""
+    lit, turned = Lit(4, 2), 15
+    coat = {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.4}
+    fresnel = schlick(0.04, np.cos(np.radians(25)))
+    glossy = lit.lit(25, lambda wo, wi: fresnel * ggx_separable(wo, wi, 0.16))
+    for sign in (1, -1):
+        tilt, bend = 25 - sign * turned, sign * turned
+        bent_coat = dict(coat, clearcoatNormalTexture=bent(lit, bend))
+        lit.hold("a coat bent by %d" % bend, dict(BLACK, **layers(
+            clearcoat=bent_coat, specular=NO_SPECULAR)), tilt, glossy)
+        below = lit.lit(tilt, lambda wo, wi: (1 - fresnel) * 0.8 / np.pi)
+        lit.hold("a coat bent by %d over white" % bend, dict(
+            base=(0.8, 0.8, 0.8), metallic=0.0, **layers(
+                clearcoat=bent_coat, specular=NO_SPECULAR)), tilt, glossy + below)
+        lit.hold("a coat over what is bent by %d" % bend, dict(BLACK, normalTexture=bent(
+            lit, bend), **layers(clearcoat=coat, specular=NO_SPECULAR)), 25, glossy)
+    lit.judge(5e-4)
+    bases = Lit(2, 1)
+    for bend in (turned, -turned):
+        bases.hold("metal bent by %d" % bend, dict(
+            base=(0.9, 0.9, 0.9), metallic=1.0, roughness=0.4, normalTexture=bent(bases, bend),
+            **layers(clearcoat={"clearcoatFactor": 0.0})), 25 - bend, bases.lit(25, lambda wo, wi:
+                schlick(0.9, wo[2]) * ggx_separable(wo, wi, 0.16)))
+    bases.judge(0.01)
+
+
 def test_anisotropy():
     """alpha along the turned tangent is mix(alpha, 1, strength^2), of metal with Schlick's
     Fresnel."""
@@ -221,22 +262,6 @@ def film_reflectance(wavelengths, film, thickness, beyond):
     return np.abs((first + second * wave) / (1 + first * second * wave)) ** 2
 
 
-def matching_functions(wavelengths):
-    """CIE 1931 x, y, z (Wyman, Sloan and Shirley 2013, the fit of several lobes)."""
-    def lobe(height, middle, below, above):
-        t = (wavelengths - middle) * np.where(wavelengths < middle, below, above)
-        return height * np.exp(-0.5 * t * t)
-    x = (lobe(0.362, 442.0, 0.0624, 0.0374) + lobe(1.056, 599.8, 0.0264, 0.0323) -
-         lobe(0.065, 501.1, 0.0490, 0.0382))
-    y = lobe(0.821, 568.8, 0.0213, 0.0247) + lobe(0.286, 530.9, 0.0613, 0.0322)
-    z = lobe(1.217, 437.0, 0.0845, 0.0278) + lobe(0.681, 459.0, 0.0385, 0.0725)
-    return np.stack([x, y, z])
-
-
-TO_RGB = np.array([[3.2404542, -1.5371385, -0.4985314], [-0.9692660, 1.8760108, 0.0415560],
-                   [0.0556434, -0.2040259, 1.0572252]])
-
-
 def film_color(f0, film, thickness):
     """Belcour and Barla's color: the mean over all phases as it is, what interferes by the eye's
     response to light of equal energy."""
@@ -269,5 +294,5 @@ def test_iridescence():
 
 
 if __name__ == "__main__":
-    main(test_sheen, test_clearcoat, test_anisotropy, test_specular, test_retroreflection,
-         test_diffuse_transmission, test_iridescence)
+    main(test_sheen, test_clearcoat, test_normals_of_layers, test_anisotropy, test_specular,
+         test_retroreflection, test_diffuse_transmission, test_iridescence)

@@ -152,8 +152,9 @@ def test_known_gains():
 
 def test_layers_take():
     """No layer over glTF's white dielectric raises what that returns."""
-    over = [("specular 0", dict(specular={"specularFactor": 0})), ("a film", dict(iridescence=FILM)),
-            ("a coat", dict(clearcoat=COAT)), ("sheen", dict(sheen=SHEEN)),
+    over = [("specular 0", dict(specular={"specularFactor": 0})),
+            ("a film", dict(iridescence=FILM)), ("a coat", dict(clearcoat=COAT)),
+            ("sheen", dict(sheen=SHEEN)),
             ("brushing", dict(anisotropy=BRUSHED)), ("retroreflection", dict(retroreflection=BACK)),
             ("coat, sheen and film", dict(clearcoat=COAT, sheen=SHEEN, iridescence=FILM))]
     rough = dict(PLATE, roughness=0.5)

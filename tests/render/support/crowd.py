@@ -36,6 +36,45 @@ def _glossy(s):
                    doubleSided=True)]
 
 
+def _models(s):
+    """The models that CDL_material adds, and energy given back."""
+    red = [0.8, 0.3, 0.2]
+    glass = {"model": "dielectric", "ior": 1.5}
+    disney = {"model": "disney", "baseColor": red}
+    return [
+        s.material({"model": "oren_nayar", "reflectance": red, "roughness": 0.7}),
+        s.material({"model": "plastic", "reflectance": red, "alpha": 0.1}),
+        s.material(dict(disney, roughness=0.4, clearcoat=1, sheen=1, subsurface=0.5)),
+        s.material(dict(disney, specTrans=0.8, roughness=0.3)),
+        s.material(dict(disney, thin=True, diffTrans=1, specTrans=0.3)),
+        s.material(dict(glass, alpha=0.2), {"absorption": [2, 1, 0.5]}),
+        s.material(dict(glass, alpha=[0.1, 0.3], distribution="beckmann", thin=True)),
+        s.material(dict(glass, abbe=20)), s.material(dict(glass, abbe=20, alpha=0.05)),
+        s.material(dict(glass, alpha=0.5, energyCompensation=True)),
+        s.material({"model": "conductor", "metal": "Ag", "alpha": [0.5, 0.2],
+                    "energyCompensation": True})]
+
+
+def _layers(s):
+    """glTF's layers."""
+    def layered(roughness=0.4, **extensions):
+        return s.material(base=(0.8, 0.5, 0.3), metallic=0.2, roughness=roughness, extensions={
+            "KHR_materials_" + name: value for name, value in extensions.items()})
+
+    through = {"transmissionFactor": 0.9}
+    volume = {"thicknessFactor": 1, "attenuationDistance": 0.5, "attenuationColor": [0.5, 0.8, 1]}
+    return [
+        layered(clearcoat={"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.1,
+                           "clearcoatNormalTexture": s.texture(_codes(8) // 4 + 160)},
+                sheen={"sheenColorFactor": [0.2, 0.5, 0.9], "sheenRoughnessFactor": 0.4}),
+        layered(iridescence={"iridescenceFactor": 1}, specular={"specularFactor": 0.7}),
+        layered(anisotropy={"anisotropyStrength": 0.8, "anisotropyRotation": 0.7}),
+        layered(transmission=through), layered(transmission=through, volume=volume),
+        layered(0.1, transmission=through, volume=volume, dispersion={"dispersion": 3}),
+        layered(diffuse_transmission={"diffuseTransmissionFactor": 0.6}),
+        layered(retroreflection={"retroreflectionFactor": 0.7})]
+
+
 def _others(s):
     """All the rest: what is smooth or ideal, holes, and media."""
     glass = {"model": "dielectric", "ior": 1.5}
@@ -92,6 +131,11 @@ def _stage(materials):
 
 def everything():
     return _stage(lambda s: _glossy(s) + _others(s))
+
+
+def layers():
+    """All models that `everything` has not."""
+    return _stage(lambda s: _models(s) + _layers(s))
 
 
 def without_gloss():
