@@ -9,10 +9,11 @@
 #include "render/bsdf.h"
 #include "scene/pack_parts.h"
 
-enum { CHUNK = 1 << 17, WAVELENGTHS = 16, QUERY = 0, MATERIAL, DIRECTIONS, RESULTS, BUFFERS };
+enum { CHUNK = 1 << 17, WAVELENGTHS = 16 };
+enum { QUERY, MATERIAL, ENERGY, DIRECTIONS, RESULTS, BUFFERS };
 
-static const char *const names[BUFFERS] = {"bsdf_query", "materials", "bsdf_directions",
-                                           "bsdf_results"};
+static const char *const names[BUFFERS] = {"bsdf_query", "materials", "energy_table",
+                                           "bsdf_directions", "bsdf_results"};
 
 struct cdl_Bsdf {
   const cdl_Log *log;
@@ -80,40 +81,51 @@ static int disperses(const cdl_Material *m) {
   }
 }
 
-/* The material as renders have it. */
-static cdl_Status pack(const cdl_Log *log, const cdl_Scene *scene, uint32_t index,
-                       cdl_Material *material) {
-  cdl_Pack all = {0};
-  cdl_Status status = pack_materials(log, scene, &all);
-  if (!status) *material = all.materials[index];
-  pack_free(&all);
+/* --- The device. */
+
+static cdl_Status make_buffers(cdl_Bsdf *b, const cdl_Pack *pack, uint32_t index) {
+  const size_t sizes[BUFFERS] = {sizeof(cdl_BsdfQuery), sizeof *pack->materials,
+                                 pack->energy_count * sizeof *pack->energy_table,
+                                 (size_t)CHUNK * 6 * sizeof(float),
+                                 (size_t)CHUNK * 8 * sizeof(float)};
+  const void *data[BUFFERS] = {
+      [MATERIAL] = &pack->materials[index],
+      [ENERGY] = pack->energy_table,
+  };
+  cdl_Status status = CDL_OK;
+  for (int i = 0; i < BUFFERS && !status; i++) {
+    status = buffer_create(b->device, names[i], sizes[i], data[i], &b->buffers[i]);
+    bindings_set(&b->bindings, names[i], &b->buffers[i]);
+  }
   return status;
 }
 
-/* --- The device. */
+static cdl_Status set_options(cdl_Device *device, const cdl_Material *material) {
+  const int loses = !(material->flags & CDL_MATERIAL_ENERGY_COMPENSATED);
+  char options[96];
+  snprintf(options, sizeof options, "-DCDL_SHADE_MODEL=%uu%s", material->model,
+           loses ? " -DCDL_ENERGY_COMPENSATION=0" : "");
+  return device_set_options(device, options);
+}
 
-static cdl_Status make_buffers(cdl_Bsdf *b, const cdl_Material *material) {
-  const size_t sizes[BUFFERS] = {sizeof(cdl_BsdfQuery), sizeof *material,
-                                 (size_t)CHUNK * 6 * sizeof(float),
-                                 (size_t)CHUNK * 8 * sizeof(float)};
-  cdl_Status status = CDL_OK;
-  for (int i = 0; i < BUFFERS && !status; i++) {
-    status = buffer_create(b->device, names[i], sizes[i], i == MATERIAL ? material : NULL,
-                           &b->buffers[i]);
-    bindings_set(&b->bindings, names[i], &b->buffers[i]);
-  }
+/* The material as renders have it. */
+static cdl_Status create(cdl_Bsdf *b, const cdl_Scene *scene, uint32_t index) {
+  cdl_Pack pack = {0};
+  cdl_Status status = pack_materials(b->log, scene, &pack);
+  if (!status) status = pack_energy(b->log, &pack);
+  if (!status) status = set_options(b->device, &pack.materials[index]);
+  if (!status) status = make_buffers(b, &pack, index);
+  if (!status) b->wavelengths = disperses(&pack.materials[index]) ? WAVELENGTHS : 0;
+  pack_free(&pack);
   return status;
 }
 
 cdl_Status cdl_bsdf_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
                            const char *material, cdl_Bsdf **bsdf) {
   uint32_t index;
-  cdl_Material packed;
-  char options[64];
   *bsdf = NULL;
   cdl_Status status = find(log, scene, material, &index);
   if (!status) status = check(log, scene, index);
-  if (!status) status = pack(log, scene, index, &packed);
   if (status) return status;
   cdl_Bsdf *b = calloc(1, sizeof *b);
   if (!b) return log_fail(log, CDL_DEVICE, "not enough memory for a material");
@@ -124,11 +136,8 @@ cdl_Status cdl_bsdf_create(const cdl_Log *log, cdl_Device *device, const cdl_Sce
   }
   b->log = log;
   b->device = device;
-  b->wavelengths = disperses(&packed) ? WAVELENGTHS : 0;
   snprintf(b->name, sizeof b->name, "%s", scene->materials[index].name);
-  snprintf(options, sizeof options, "-DCDL_SHADE_MODEL=%uu", packed.model);
-  status = device_set_options(device, options);
-  if (!status) status = make_buffers(b, &packed);
+  status = create(b, scene, index);
   if (status)
     cdl_bsdf_free(b);
   else

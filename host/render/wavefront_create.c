@@ -162,6 +162,7 @@ static cdl_Status upload_scene(cdl_Wavefront *w, const cdl_Pack *pack) {
       {BUFFER_environment_cells, pack->environment_cells,
        pack->cell_count * sizeof *pack->environment_cells},
       {BUFFER_media, pack->media, pack->medium_count * sizeof *pack->media},
+      {BUFFER_energy_table, pack->energy_table, pack->energy_count * sizeof *pack->energy_table},
   };
   double start = clock_now();
   cdl_Status status = CDL_OK;

@@ -59,6 +59,7 @@ cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width,
   memset(pack, 0, sizeof *pack);
   cdl_Status status = pack_textures(log, scene, pack);
   if (!status) status = pack_materials(log, scene, pack);
+  if (!status) status = pack_energy(log, pack);
   if (!status) status = pack_media(log, scene, pack);
   if (!status) status = pack_geometry(log, scene, bvh_width, pack);
   if (!status) status = pack_environment(log, scene, pack, &environment_power);
@@ -80,6 +81,7 @@ void pack_free(cdl_Pack *pack) {
   free(pack->environment);
   free(pack->environment_cells);
   free(pack->media);
+  free(pack->energy_table);
   bvh_free(&pack->bvh);
   memset(pack, 0, sizeof *pack);
 }

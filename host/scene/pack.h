@@ -44,8 +44,10 @@ typedef struct cdl_Pack {
   float *environment; /* RGB and a pad for each texel */
   cdl_AliasEntry *environment_cells;
   cdl_Medium *media;
+  float *energy_table; /* bsdf/energy.h; NULL unless features.energy_compensation */
   size_t triangle_count, shape_count, attribute_count, material_count, param_texture_count,
-      texture_count, texel_count, light_count, environment_count, cell_count, medium_count;
+      texture_count, texel_count, light_count, environment_count, cell_count, medium_count,
+      energy_count;
   uint32_t scene_medium;
   uint32_t motion_keys; /* times at which moving things are known; below 2: nothing moves */
   uint32_t camera_keys; /* where in the attributes the cameras' matrices at those times begin */

@@ -16,6 +16,14 @@ void *pack_array(const cdl_Log *log, const char *what, size_t count, size_t size
 cdl_Status pack_textures(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
 cdl_Status pack_materials(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
 
+/* The tables of bsdf/energy.h that the packed materials look things up in; none if none does. */
+cdl_Status pack_energy(const cdl_Log *log, cdl_Pack *pack);
+
+/* The parts of them for one kind of facets, energy_kind(), in `all` of ENERGY_KINDS x
+ * ENERGY_KIND_WORDS floats. */
+void pack_energy_metal(uint32_t kind, float *all);
+void pack_energy_glass(uint32_t kind, float *all);
+
 /* Also numbers the lights of emissive shapes and builds the trees. */
 cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
 

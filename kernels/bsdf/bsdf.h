@@ -27,6 +27,8 @@ typedef struct BsdfPoint {
   float channel_choice; /* [0,1), of this vertex: for the choice of a colour channel */
   uint flags;           /* CDL_MATERIAL_* */
   int front;            /* 1: wo is on the front of the geometry, outside */
+  /* energy.h's tables, for models that compensate; else NULL */
+  CDL_GLOBAL const float *energy;
 } BsdfPoint;
 
 /* Words of the model's own parameters, abi/param_fields.h: word k of point i is params[k stride +

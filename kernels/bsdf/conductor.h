@@ -15,6 +15,9 @@ typedef struct ConductorParams {
   vec3 eta, k;       /* complex index, per channel */
   vec3 diffuse;      /* colour of the diffuse lobe over the mean of what is missing */
   float compensated; /* 1, else 0 */
+#if CDL_ENERGY_COMPENSATION
+  CDL_GLOBAL const float *energy; /* table of its kind of facets */
+#endif
 } ConductorParams;
 
 /* Mean reflectance, weighted by the cosine, by Gauss's rule for that weight with two nodes; error
@@ -42,7 +45,8 @@ CDL_INLINE ConductorParams conductor_make(BsdfPoint point, float alpha_x, float 
   p.compensated = 0.0f;
 #if CDL_ENERGY_COMPENSATION
   int compensated = (point.flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u && !p.facets.smooth;
-  float missing = energy_metal_missing_mean(p.facets);
+  p.energy = energy_table(point.energy, p.facets);
+  float missing = energy_metal_missing_mean(p.energy, p.facets);
   eta.x = math_after(missing, eta.x);
   vec3 fresnel = conductor_mean_fresnel(eta, k);
   float inverse = 1.0f / missing;
@@ -67,7 +71,12 @@ CDL_INLINE ConductorParams conductor_params(BsdfPoint point, CDL_GLOBAL const ui
 
 /* Share of light that single scattering does not return, and of samples of the diffuse lobe. */
 CDL_INLINE float conductor_diffuse_share(ConductorParams p, vec3 wo) {
-  return p.compensated * energy_metal_missing(p.facets, wo);
+#if CDL_ENERGY_COMPENSATION
+  return p.compensated * energy_metal_missing(p.energy, p.facets, wo);
+#else
+  (void)wo;
+  return p.compensated * 0.0f;
+#endif
 }
 
 CDL_INLINE BsdfValue conductor_value(ConductorParams p, vec3 wo, vec3 wi, float share) {
@@ -78,7 +87,7 @@ CDL_INLINE BsdfValue conductor_value(ConductorParams p, vec3 wo, vec3 wi, float 
 #if CDL_ENERGY_COMPENSATION
   p.facets.alpha_x = math_after(pdf, p.facets.alpha_x);
   float cosine_pdf = wo.z > 0.0f ? CDL_INV_PI * math_max(wi.z, 0.0f) : 0.0f;
-  float missing = energy_metal_missing(p.facets, wi);
+  float missing = energy_metal_missing(p.energy, p.facets, wi);
   f_cos = v3_madd(f_cos, share * missing * cosine_pdf, p.diffuse);
   pdf = math_lerp(pdf, cosine_pdf, share);
 #else

@@ -1,86 +1,212 @@
 /* energy.h: how much light single scattering between rough facets loses, for models that give it
  * back (Kulla and Conty 2017, "Revisiting Physically Based Shading at Imageworks").
  *
- * 1 - E(w) is what a surface that absorbs nothing keeps back of light from w. It comes from fits
- * (energy_fit.h), within 0.01 of the truth and on the side of too little rather than too much. The
- * mean over the cosine is that of the fit, so that all of it comes back:
+ * 1 - E(w) is what a surface that absorbs nothing keeps back of light from w. It is interpolated
+ * from a table that the host makes when a scene needs it (host/scene/pack_energy.c), and so is its
+ * mean over the cosine, which is that of the interpolant, so that all of it comes back:
  * f = (1 - E(wo)) (1 - E(wi)) / (pi mean).
+ *
+ * The axes follow what the loss depends on: the direction where the surface is stretched to
+ * roughness 1, both alphas, and for glass the index by its critical angle, in the scale of the
+ * cosine and of alpha, because all happens near them where the index is near 1. White metal and
+ * sheets return 0.99 to 1.0005, as does isotropic glass; tests/device/test_energy.c says where.
+ * Anisotropic glass is looked up as isotropic glass of the alpha along the view or of the mean
+ * alpha, whichever lost less.
+ *
  * A kernel built with CDL_ENERGY_COMPENSATION 0 does without; its results are those with
  * compensation off. */
 #ifndef CDL_BSDF_ENERGY_H
 #define CDL_BSDF_ENERGY_H
 
 #include "bsdf/dielectric.h"
-#include "bsdf/energy_fit.h"
 #include "bsdf/microfacet.h"
 
 #ifndef CDL_ENERGY_COMPENSATION
 #define CDL_ENERGY_COMPENSATION 1
 #endif
 
-#define ENERGY_ALPHA_MIN 1e-3f
-#define ENERGY_MEAN_ALPHA_MIN 0.0035f /* below, the mean goes with the square of alpha */
-#define ENERGY_COSINE_MIN 1e-3f
+/* Nodes of the axes, from 0 to 1; the first of each list is the innermost. */
+#define ENERGY_SLANTS 28u
+#define ENERGY_TURNS 6u
+#define ENERGY_ALPHAS 16u /* along X, along Y */
+#define ENERGY_MEAN_ALPHAS 31u
+#define ENERGY_BENDS 41u
+#define ENERGY_MEAN_BENDS 49u
+
+/* The table of one kind of facets, and where in it the parts begin: loss of metal by slant, turn,
+ * alpha along X and along Y; its mean by those alphas; loss of glass by slant, alpha and bend; its
+ * mean by both alphas and bend. Means are over energy_spread. */
+#define ENERGY_METAL_MEAN_AT (ENERGY_SLANTS * ENERGY_TURNS * ENERGY_ALPHAS * ENERGY_ALPHAS)
+#define ENERGY_GLASS_AT (ENERGY_METAL_MEAN_AT + ENERGY_MEAN_ALPHAS * ENERGY_MEAN_ALPHAS)
+#define ENERGY_GLASS_MEAN_AT (ENERGY_GLASS_AT + ENERGY_SLANTS * ENERGY_ALPHAS * ENERGY_BENDS)
+#define ENERGY_KIND_WORDS (ENERGY_GLASS_MEAN_AT + ENERGY_ALPHAS * ENERGY_ALPHAS * ENERGY_MEAN_BENDS)
+#define ENERGY_KINDS 4u /* GGX, Beckmann; the same with separable masking */
+
+#define ENERGY_ALPHA_MIN 1e-3f /* smoother ones differ by the scale of the cosine alone */
+#define ENERGY_MEAN_ROOT 0.177827941f /* ENERGY_ALPHA_MIN to the power 1/4 */
+#define ENERGY_ETA_MAX 4.0f
+#define ENERGY_BEND_MAX 0.968245837f /* sine of the angle whose cosine is 1 / ENERGY_ETA_MAX */
 #define ENERGY_MEAN_MIN 1e-9f
 
-/* How many times rougher the surface is for which the fits answer: what is missing from very smooth
- * ones depends on the ratio of cosine and alpha alone. */
-CDL_INLINE float energy_magnification(Microfacets m) {
-  return math_max(ENERGY_ALPHA_MIN / math_max(m.alpha_x, m.alpha_y), 1.0f);
+CDL_INLINE uint energy_kind(int beckmann, int separable) {
+  return (beckmann ? 1u : 0u) + (separable ? 2u : 0u);
 }
 
-/* The surface within the range of the fits. */
-CDL_INLINE Microfacets energy_surface(Microfacets m, float magnification, float least) {
-  m.alpha_x = math_clamp(m.alpha_x * magnification, least, 1.0f);
-  m.alpha_y = math_clamp(math_after(m.alpha_x, m.alpha_y) * magnification, least, 1.0f);
-  return m;
+/* ---- coordinates ---- */
+
+/* A direction where the surface is stretched to roughness 1. */
+typedef struct EnergyView {
+  float slant; /* r / (1 + r), r the root of the cotangent */
+  float turn;  /* y / (x + y) of its azimuth */
+  float along; /* alpha of the surface along it */
+  float pad0, pad1;
+} EnergyView;
+
+CDL_INLINE EnergyView energy_view(Microfacets m, vec3 w) {
+  EnergyView view;
+  float x = math_abs(m.alpha_x * w.x);
+  float y = math_abs(math_after(x, m.alpha_y) * w.y);
+  float stretched = sqrt(fma(x, x, y * y));
+  float sine = sqrt(fma(w.x, w.x, w.y * w.y));
+  float root = sqrt(math_max(math_after(sine, w.z), 1e-12f));
+  view.slant = root / (root + sqrt(math_after(root, stretched)));
+  view.turn = y / math_max(x + y, 1e-30f);
+  view.along = sine > 1e-12f ? stretched / math_max(sine, 1e-12f) : m.alpha_x;
+  view.pad0 = 0.0f;
+  view.pad1 = 0.0f;
+  return view;
 }
 
-/* 1 - E(w) of white metal, w.z > 0. */
-CDL_INLINE float energy_metal_missing(Microfacets m, vec3 w) {
-#if CDL_ENERGY_COMPENSATION
-  float magnification = energy_magnification(m);
-  m = energy_surface(m, magnification, ENERGY_ALPHA_MIN);
-  w.z = math_clamp(w.z * magnification, ENERGY_COSINE_MIN, 1.0f);
-  float sine = math_safe_sqrt(fma(w.x, w.x, w.y * w.y));
-  float inverse = 1.0f / (sine > 1e-12f ? sine : 1.0f);
-  float cos_phi = sine > 1e-12f ? w.x * inverse : 1.0f;
-  float sin_phi = sine > 1e-12f ? w.y * inverse : 0.0f;
-  float xc = m.alpha_x * cos_phi, ys = m.alpha_y * sin_phi;
-  float along = sqrt(fma(xc, xc, ys * ys));
-  float xs = math_after(along, m.alpha_x) * sin_phi, yc = m.alpha_y * cos_phi;
-  float across = sqrt(fma(xs, xs, yc * yc));
-  float g1 = 1.0f / (1.0f + microfacet_lambda(m, w));
-  float t = w.z / (w.z + math_after(g1, along));
-  float fit = energy_fit_metal(g1, t, w.z, along, across, m.alpha_x * m.alpha_y / along,
-                               m.beckmann ? 1.0f : 0.0f, m.separable ? 1.0f : 0.0f);
-  /* nothing is missing so far above grazing that no facet masks, but the fit would not say 0 */
-  float gate = math_saturate(2.0f - 0.125f * w.z / math_max(m.alpha_x, m.alpha_y));
-  return math_clamp(fit - ENERGY_FIT_BIAS, 0.0f, 1.0f) * gate;
-#else
-  (void)m;
-  (void)w;
-  return 0.0f;
-#endif
+CDL_INLINE float energy_alpha_coordinate(float alpha) { return sqrt(alpha); }
+
+/* For means, which over energy_spread go with the logarithm of small alphas. */
+CDL_INLINE float energy_mean_coordinate(float alpha) {
+  return (sqrt(sqrt(alpha)) - ENERGY_MEAN_ROOT) * (1.0f / (1.0f - ENERGY_MEAN_ROOT));
+}
+
+/* Half the mean square of the alpha along all azimuths: what the mean loss is in proportion to. */
+CDL_INLINE float energy_spread(Microfacets m) {
+  return 0.5f * fma(m.alpha_x, m.alpha_x, m.alpha_y * m.alpha_y);
+}
+
+/* The cosine of the critical angle over the greatest: of total reflection and negative for eta < 1,
+ * of the directions beyond for eta > 1. */
+CDL_INLINE float energy_bend(float eta) {
+  float ratio = math_max(math_min(eta, 1.0f / eta), 1.0f / ENERGY_ETA_MAX);
+  float bend = sqrt((1.0f - ratio) * (1.0f + ratio)) * (1.0f / ENERGY_BEND_MAX);
+  return eta < 1.0f ? -bend : bend;
+}
+
+/* In the scale of `about` > 0, cosine plus alpha. */
+CDL_INLINE float energy_bend_coordinate(float bend, float about) {
+  return fma(0.5f * (1.0f + about), bend / (math_abs(bend) + about), 0.5f);
+}
+
+/* ---- interpolation ---- */
+
+typedef struct EnergyCell {
+  uint node; /* below */
+  float part;
+  float pad0, pad1, pad2;
+} EnergyCell;
+
+CDL_INLINE EnergyCell energy_cell(float x, uint nodes) {
+  EnergyCell cell;
+  float last = (float)(nodes - 1u);
+  float at = (x > 0.0f ? (x < 1.0f ? x : 1.0f) : 0.0f) * last;
+  cell.node = (uint)math_min(at, last - 1.0f);
+  cell.part = at - (float)cell.node;
+  cell.pad0 = 0.0f;
+  cell.pad1 = 0.0f;
+  cell.pad2 = 0.0f;
+  return cell;
+}
+
+CDL_INLINE float energy_mix(float a, float b, EnergyCell x) { return fma(x.part, b - a, a); }
+
+CDL_INLINE float energy_line(CDL_GLOBAL const float *table, uint at, EnergyCell x) {
+  return energy_mix(table[at + x.node], table[at + x.node + 1u], x);
+}
+
+CDL_INLINE float energy_plane(CDL_GLOBAL const float *table, uint at, EnergyCell x, EnergyCell y,
+                              uint row) {
+  uint from = at + row * y.node;
+  return energy_mix(energy_line(table, from, x), energy_line(table, from + row, x), y);
+}
+
+CDL_INLINE float energy_cube(CDL_GLOBAL const float *table, uint at, EnergyCell x, EnergyCell y,
+                             EnergyCell z, uint row, uint plane) {
+  uint from = at + plane * z.node;
+  return energy_mix(energy_plane(table, from, x, y, row),
+                    energy_plane(table, from + plane, x, y, row), z);
+}
+
+/* ---- look-ups; `table` is that of the kind of facets ---- */
+
+CDL_INLINE CDL_GLOBAL const float *energy_table(CDL_GLOBAL const float *all, Microfacets m) {
+  return all + ENERGY_KIND_WORDS * energy_kind(m.beckmann, m.separable);
+}
+
+/* 1 - E(w) of white metal and of clear sheets, w.z > 0. */
+CDL_INLINE float energy_metal_missing(CDL_GLOBAL const float *table, Microfacets m, vec3 w) {
+  EnergyView view = energy_view(m, w);
+  EnergyCell slant = energy_cell(view.slant, ENERGY_SLANTS);
+  EnergyCell turn = energy_cell(view.turn, ENERGY_TURNS);
+  EnergyCell x = energy_cell(energy_alpha_coordinate(m.alpha_x), ENERGY_ALPHAS);
+  float alpha_y = math_after(x.part, m.alpha_y);
+  EnergyCell y = energy_cell(energy_alpha_coordinate(alpha_y), ENERGY_ALPHAS);
+  uint plane = ENERGY_SLANTS * ENERGY_TURNS;
+  uint cube = plane * ENERGY_ALPHAS;
+  uint at = cube * y.node;
+  float low = energy_cube(table, at, slant, turn, x, ENERGY_SLANTS, plane);
+  turn.part = math_after(low, turn.part);
+  float high = energy_cube(table, at + cube, slant, turn, x, ENERGY_SLANTS, plane);
+  return energy_mix(low, high, y);
 }
 
 /* Its mean over the cosine, > 0. */
-CDL_INLINE float energy_metal_missing_mean(Microfacets m) {
-#if CDL_ENERGY_COMPENSATION
-  float magnification = energy_magnification(m);
-  Microfacets whole = energy_surface(m, magnification, ENERGY_ALPHA_MIN);
-  float scale = 0.5f * (whole.alpha_x + whole.alpha_y) / magnification;
-  m = energy_surface(m, math_after(scale, magnification), ENERGY_MEAN_ALPHA_MIN);
-  float mean = 0.5f * (m.alpha_x + m.alpha_y);
-  float fit =
-      energy_fit_metal_mean(mean, sqrt(m.alpha_x * m.alpha_y), sqrt(mean), mean / (mean + 0.05f),
-                            m.beckmann ? 1.0f : 0.0f, m.separable ? 1.0f : 0.0f);
-  return math_clamp(scale * scale * math_exp(fit), ENERGY_MEAN_MIN, 1.0f);
-#else
-  (void)m;
-  return 1.0f;
-#endif
+CDL_INLINE float energy_metal_missing_mean(CDL_GLOBAL const float *table, Microfacets m) {
+  EnergyCell x = energy_cell(energy_mean_coordinate(m.alpha_x), ENERGY_MEAN_ALPHAS);
+  float alpha_y = math_after(x.part, m.alpha_y);
+  EnergyCell y = energy_cell(energy_mean_coordinate(alpha_y), ENERGY_MEAN_ALPHAS);
+  float ratio = energy_plane(table, ENERGY_METAL_MEAN_AT, x, y, ENERGY_MEAN_ALPHAS);
+  return math_max(energy_spread(m) * ratio, ENERGY_MEAN_MIN);
 }
+
+CDL_INLINE float energy_glass_isotropic(CDL_GLOBAL const float *table, float slant, float cosine,
+                                        float alpha, float bend) {
+  EnergyCell s = energy_cell(slant, ENERGY_SLANTS);
+  EnergyCell x = energy_cell(energy_alpha_coordinate(alpha), ENERGY_ALPHAS);
+  EnergyCell b = energy_cell(energy_bend_coordinate(bend, cosine + alpha), ENERGY_BENDS);
+  return energy_cube(table, ENERGY_GLASS_AT, s, x, b, ENERGY_SLANTS, ENERGY_SLANTS * ENERGY_ALPHAS);
+}
+
+/* 1 - E(w) of a boundary seen from where the other side has the relative index eta. */
+CDL_INLINE float energy_boundary_missing(CDL_GLOBAL const float *table, Microfacets m, vec3 w,
+                                         float eta) {
+  EnergyView view = energy_view(m, w);
+  float bend = energy_bend(eta);
+  float cosine = math_max(w.z, 0.0f);
+  float along = energy_glass_isotropic(table, view.slant, cosine, view.along, bend);
+  float alpha = sqrt(energy_spread(m));
+  float mean = energy_glass_isotropic(table, math_after(along, view.slant), cosine, alpha, bend);
+  return math_min(along, mean);
+}
+
+CDL_INLINE float energy_boundary_missing_mean(CDL_GLOBAL const float *table, Microfacets m,
+                                              float eta) {
+  EnergyCell x = energy_cell(energy_mean_coordinate(m.alpha_x), ENERGY_ALPHAS);
+  float alpha_y = math_after(x.part, m.alpha_y);
+  EnergyCell y = energy_cell(energy_mean_coordinate(alpha_y), ENERGY_ALPHAS);
+  float spread = energy_spread(m);
+  float bend = energy_bend_coordinate(energy_bend(eta), sqrt(sqrt(spread)));
+  EnergyCell b = energy_cell(bend, ENERGY_MEAN_BENDS);
+  float ratio = energy_cube(table, ENERGY_GLASS_MEAN_AT, x, y, b, ENERGY_ALPHAS,
+                            ENERGY_ALPHAS * ENERGY_ALPHAS);
+  return math_max(spread * ratio, ENERGY_MEAN_MIN);
+}
+
+/* ---- glass ---- */
 
 /* What a dielectric boundary, or a thin sheet, keeps back, and how it shares it out. */
 typedef struct GlassEnergy {
@@ -88,84 +214,25 @@ typedef struct GlassEnergy {
   float mean_here, mean_beyond; /* mean of 1 - E over the cosine, on the side of wo and beyond */
   float reflected;              /* share of it that comes back on the side of wo */
   int thin;
+#if CDL_ENERGY_COMPENSATION
+  CDL_GLOBAL const float *table;
+#endif
 } GlassEnergy;
 
 #if CDL_ENERGY_COMPENSATION
 
-/* Cosine beyond the boundary, rounded off about the critical angle as roughness does: the root of a
- * hyperbola in place of max(x, 0). */
-CDL_INLINE float energy_glass_scaled_cosine(float cosine, float eta, float alpha) {
-  float x = fma(cosine, cosine, (eta - 1.0f) * (eta + 1.0f));
-  return sqrt(math_max(0.5f * (x + sqrt(fma(x, x, 0.25f * alpha * alpha))), 1e-12f));
-}
-
-/* Masking of both directions together, or of one where it is separable. */
-CDL_INLINE float energy_glass_masked(float lambda, float lambda_o, int separable) {
-  return lambda / (1.0f + lambda + (separable ? 0.0f : lambda_o));
-}
-
-/* The isotropic surface that stands for m: its fits know no other. */
-CDL_INLINE Microfacets energy_glass_surface(Microfacets m) {
-  m = energy_surface(m, 1.0f, ENERGY_ALPHA_MIN);
-  float alpha = sqrt(m.alpha_x * m.alpha_y);
-  m.alpha_x = alpha;
-  m.alpha_y = alpha;
-  return m;
-}
-
-/* sqrt(1 - eta^2), the cosine of the critical angle; 0 for eta >= 1. */
-CDL_INLINE float energy_critical_cosine(float eta) {
-  return math_safe_sqrt((1.0f - eta) * (1.0f + eta));
-}
-
-CDL_INLINE float energy_glass_fit(Microfacets m, float cosine, float eta) {
-  m = energy_glass_surface(m);
-  eta = math_clamp(eta, 0.25f, 4.0f);
-  cosine = math_clamp(cosine, ENERGY_COSINE_MIN, 1.0f);
-  float alpha = m.alpha_x;
-  float scaled = energy_glass_scaled_cosine(cosine, eta, alpha);
-  float beyond = math_min(scaled / eta, 1.0f);
-  float reflected = fresnel_dielectric_between(cosine, beyond, eta);
-  float floor_beyond = math_max(beyond, 1e-3f);
-  vec3 flat = v3(math_safe_sqrt((1.0f - cosine) * (1.0f + cosine)), 0.0f, cosine);
-  float lambda_o = microfacet_lambda(m, flat);
-  m.alpha_x = math_after(lambda_o, m.alpha_x);
-  vec3 refracted =
-      v3(math_safe_sqrt((1.0f - floor_beyond) * (1.0f + floor_beyond)), 0.0f, floor_beyond);
-  float lambda_t = microfacet_lambda(m, refracted);
-  float base_r = energy_glass_masked(lambda_o, lambda_o, m.separable);
-  float base_t = energy_glass_masked(math_after(base_r, lambda_t), lambda_o, m.separable);
-  float critical = energy_critical_cosine(eta);
-  float dense = energy_critical_cosine(1.0f / math_after(critical, eta));
-  float fit = energy_fit_glass(
-      math_lerp(base_t, base_r, reflected), 1.0f / (1.0f + lambda_t), cosine / (cosine + alpha),
-      reflected, beyond / (math_after(base_t, alpha) + beyond), cosine, alpha, critical, dense,
-      critical / (critical + alpha + cosine), m.beckmann ? 1.0f : 0.0f, m.separable ? 1.0f : 0.0f);
-  return math_clamp(fit - ENERGY_FIT_BIAS, 0.0f, 1.0f);
-}
-
-CDL_INLINE float energy_glass_fit_mean(Microfacets m, float eta) {
-  m = energy_glass_surface(m);
-  eta = math_clamp(eta, 0.25f, 4.0f);
-  float alpha = m.alpha_x;
-  float critical = energy_critical_cosine(eta);
-  float dense = energy_critical_cosine(1.0f / math_after(critical, eta));
-  float fit = energy_fit_glass_mean(alpha, sqrt(alpha), alpha / (alpha + 0.05f),
-                                    (eta - 1.0f) / (eta + 1.0f), critical, dense,
-                                    m.beckmann ? 1.0f : 0.0f, m.separable ? 1.0f : 0.0f);
-  return math_clamp(alpha * math_exp(fit), ENERGY_MEAN_MIN, 1.0f);
-}
-
 /* Reflected share x of side o, with 1 - x_o = (1 - F_o) mean_t / max(mean_o, mean_t): reciprocal,
  * because n_o^2 (1 - F_o) = n_t^2 (1 - F_t) for Fresnel's means over the cosine (Kulla and Conty
  * 2017; their fit of F for the denser side, the other from that identity). */
-CDL_INLINE GlassEnergy energy_glass(Microfacets m, float eta, int thin, int compensated) {
+CDL_INLINE GlassEnergy energy_glass(CDL_GLOBAL const float *all, Microfacets m, float eta, int thin,
+                                    int compensated) {
   GlassEnergy e;
-  float metal = energy_metal_missing_mean(m);
+  e.table = energy_table(all, m);
+  float metal = energy_metal_missing_mean(e.table, m);
   m.alpha_x = math_after(metal, m.alpha_x);
-  float here = energy_glass_fit_mean(m, eta);
+  float here = energy_boundary_missing_mean(e.table, m, eta);
   m.alpha_x = math_after(here, m.alpha_x);
-  float beyond = energy_glass_fit_mean(m, 1.0f / eta);
+  float beyond = energy_boundary_missing_mean(e.table, m, 1.0f / eta);
   float denser = math_max(eta, 1.0f / eta);
   float fresnel = (denser - 1.0f) / fma(1.00071f, denser, 4.08567f);
   float passes = (1.0f - fresnel) * (eta < 1.0f ? eta * eta : 1.0f);
@@ -180,18 +247,15 @@ CDL_INLINE GlassEnergy energy_glass(Microfacets m, float eta, int thin, int comp
 
 /* 1 - E(w), w.z > 0, on the side from which the other has the relative index eta. */
 CDL_INLINE float energy_glass_missing(GlassEnergy e, Microfacets m, vec3 w, float eta) {
-  float metal = energy_metal_missing(m, w);
+  float metal = energy_metal_missing(e.table, m, w);
   m.alpha_x = math_after(metal, m.alpha_x);
-  float glass = energy_glass_fit(m, w.z, eta);
+  float glass = energy_boundary_missing(e.table, m, w, eta);
   return e.thin ? metal : glass;
 }
 
 #else
 
-CDL_INLINE GlassEnergy energy_glass(Microfacets m, float eta, int thin, int compensated) {
-  (void)m;
-  (void)eta;
-  (void)compensated;
+CDL_INLINE GlassEnergy energy_glass_none(int thin) {
   GlassEnergy e;
   e.compensated = 0.0f;
   e.mean_here = 1.0f;
@@ -199,14 +263,6 @@ CDL_INLINE GlassEnergy energy_glass(Microfacets m, float eta, int thin, int comp
   e.reflected = 0.5f;
   e.thin = thin;
   return e;
-}
-
-CDL_INLINE float energy_glass_missing(GlassEnergy e, Microfacets m, vec3 w, float eta) {
-  (void)e;
-  (void)m;
-  (void)w;
-  (void)eta;
-  return 0.0f;
 }
 
 #endif

@@ -1,6 +1,6 @@
 /* model.h: the one model that a shading kernel is built for, under names that do not say which.
  * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross
- * it. */
+ * it. CDL_SHADE_ENERGY: it takes the tables of energy.h. */
 #ifndef CDL_BSDF_MODEL_H
 #define CDL_BSDF_MODEL_H
 
@@ -35,6 +35,7 @@
 #define bsdf_sample_model diffuse_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_CONDUCTOR
 #include "bsdf/conductor.h"
+#define CDL_SHADE_ENERGY 1
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 0
 #define BsdfParams ConductorParams
@@ -83,6 +84,7 @@
 #define bsdf_sample_model plastic_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_ROUGH_DIELECTRIC
 #include "bsdf/rough_dielectric.h"
+#define CDL_SHADE_ENERGY 1
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 1
 #if CDL_DISPERSION

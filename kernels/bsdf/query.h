@@ -34,7 +34,8 @@ CDL_INLINE vec3 query_vec3(CDL_GLOBAL const float *from, size_t i) {
 CDL_INLINE vec3 query_turn(int front, vec3 w) { return v3_select(front, w, v3(w.x, -w.y, -w.z)); }
 
 /* The material at a point of factors alone, seen by white light. */
-CDL_INLINE BsdfParams query_params(CDL_GLOBAL const cdl_Material *material, int front,
+CDL_INLINE BsdfParams query_params(CDL_GLOBAL const cdl_Material *material,
+                                   CDL_GLOBAL const float *energy_table, int front,
                                    float wavelength, float channel_choice) {
   BsdfPoint point;
   point.base = v3(material->base[0], material->base[1], material->base[2]);
@@ -44,6 +45,7 @@ CDL_INLINE BsdfParams query_params(CDL_GLOBAL const cdl_Material *material, int 
   point.channel_choice = channel_choice;
   point.flags = material->flags;
   point.front = front;
+  point.energy = energy_table;
   return bsdf_params(point, (CDL_GLOBAL const uint *)material->param, 1, 0);
 }
 

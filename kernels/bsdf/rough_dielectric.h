@@ -40,7 +40,12 @@ CDL_INLINE RoughDielectricParams rough_dielectric_make(BsdfPoint point, float al
                                 (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
   p.smooth = rough_dielectric_is_smooth(p.facets, p.glass.eta, p.glass.thin);
   int compensated = (point.flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u && !p.smooth;
-  p.energy = energy_glass(p.facets, p.glass.eta, p.glass.thin, compensated);
+#if CDL_ENERGY_COMPENSATION
+  p.energy = energy_glass(point.energy, p.facets, p.glass.eta, p.glass.thin, compensated);
+#else
+  (void)compensated;
+  p.energy = energy_glass_none(p.glass.thin);
+#endif
   float widest = v3_max(p.glass.channel);
   p.tint = v3_max(v3_mul(p.glass.channel, p.glass.transmittance)) / (widest > 0.0f ? widest : 1.0f);
   return p;
@@ -112,7 +117,12 @@ CDL_INLINE RoughDielectricLobe rough_dielectric_lobe(RoughDielectricParams p, ve
 
 /* Probability of sampling the diffuse lobe. */
 CDL_INLINE float rough_dielectric_diffuse_share(RoughDielectricParams p, vec3 wo) {
+#if CDL_ENERGY_COMPENSATION
   return p.energy.compensated * energy_glass_missing(p.energy, p.facets, wo, p.glass.eta);
+#else
+  (void)wo;
+  return p.energy.compensated * 0.0f;
+#endif
 }
 
 CDL_INLINE BsdfValue rough_dielectric_value(RoughDielectricParams p, vec3 wo, vec3 wi,

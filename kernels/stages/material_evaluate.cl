@@ -5,6 +5,7 @@
 
 __kernel void material_evaluate(CDL_CONSTANT cdl_BsdfQuery *restrict query,
                                 CDL_GLOBAL const cdl_Material *materials,
+                                CDL_GLOBAL const float *energy_table,
                                 CDL_GLOBAL const float *bsdf_directions,
                                 CDL_GLOBAL float *bsdf_results) {
   size_t i = get_global_id(0);
@@ -21,7 +22,8 @@ __kernel void material_evaluate(CDL_CONSTANT cdl_BsdfQuery *restrict query,
   for (uint k = 0; k < count; k++) {
     float wavelength = ((float)(k / 3u) + 0.5f) / (float)(bands > 0u ? bands : 1u);
     float channel = ((float)(k % 3u) + 0.5f) / 3.0f;
-    BsdfValue value = bsdf_evaluate(query_params(materials, front, wavelength, channel), wo, wi);
+    BsdfValue value =
+        bsdf_evaluate(query_params(materials, energy_table, front, wavelength, channel), wo, wi);
     f_cos = v3_add(f_cos, value.f_cos);
     pdf += value.pdf;
   }

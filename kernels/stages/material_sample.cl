@@ -7,6 +7,7 @@
 
 __kernel void material_sample(CDL_CONSTANT cdl_BsdfQuery *restrict query,
                               CDL_GLOBAL const cdl_Material *materials,
+                              CDL_GLOBAL const float *energy_table,
                               CDL_GLOBAL const float *bsdf_directions,
                               CDL_GLOBAL float *bsdf_results) {
   size_t i = get_global_id(0);
@@ -23,7 +24,7 @@ __kernel void material_sample(CDL_CONSTANT cdl_BsdfQuery *restrict query,
   vec3 wo = query_vec3(bsdf_directions, direction);
   int front = wo.z > 0.0f;
   wo = query_turn(front, wo);
-  BsdfParams p = query_params(materials, front, wavelength, channel);
+  BsdfParams p = query_params(materials, energy_table, front, wavelength, channel);
   BsdfSample s = bsdf_sample_model(p, wo, u, v, lobe);
   int there = wo.z > 0.0f;
   vec3 wi = query_turn(front, s.wi);

@@ -148,13 +148,22 @@ CDL_INLINE vec3 fold(Vertex at, vec3 wi) {
 }
 #endif
 
+#ifdef CDL_SHADE_ENERGY
+#define SHADE_ENERGY_PARAMETER , CDL_GLOBAL const float *energy_table
+#define SHADE_ENERGY energy_table
+#else
+#define SHADE_ENERGY_PARAMETER
+#define SHADE_ENERGY 0
+#endif
+
 __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
                               CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL uint *path,
-                              CDL_GLOBAL uint *work) {
+                              CDL_GLOBAL uint *work SHADE_ENERGY_PARAMETER) {
   CDL_FOR_EACH_ITEM(i) {
     size_t stride = wave->stride;
     Vertex at = load_vertex(params, wave, path, work, i);
     BsdfPoint point = load_point(at, path, work, stride, i);
+    point.energy = SHADE_ENERGY;
     BsdfParams p = bsdf_params(point, work + CDL_WORK_PARAM * stride, stride, i);
 
     float u, v, lobe, chance;

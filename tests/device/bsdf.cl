@@ -22,7 +22,7 @@ CDL_INLINE float test_unit(uint seed, size_t item, uint dimension) {
 
 CDL_INLINE vec3 test_vec3(__global const float *a) { return v3(a[0], a[1], a[2]); }
 
-CDL_INLINE BsdfPoint test_point(__global const BsdfSetup *setup) {
+CDL_INLINE BsdfPoint test_point(__global const BsdfSetup *setup, __global const float *energy) {
   BsdfPoint point;
   point.base = test_vec3(setup->base);
   point.throughput = test_vec3(setup->throughput);
@@ -31,6 +31,7 @@ CDL_INLINE BsdfPoint test_point(__global const BsdfSetup *setup) {
   point.channel_choice = setup->channel_choice;
   point.flags = setup->flags;
   point.front = setup->front;
+  point.energy = energy;
   return point;
 }
 
@@ -91,10 +92,10 @@ CDL_INLINE uint test_cell(__global const BsdfChartSetup *chart, vec3 w) {
 }
 
 __kernel void sample(__global const BsdfSetup *setup, __global const uint *params,
-                     __global uint *out) {
+                     __global const float *energy, __global uint *out) {
   uint seed = setup->seed;
   EACH_ITEM {
-    ModelParams p = model_params(test_point(setup), params, 1, 0);
+    ModelParams p = model_params(test_point(setup, energy), params, 1, 0);
     vec3 wo = test_vec3(setup->wo);
     BsdfSample s = model_sample(p, wo, test_unit(seed, item, 0u), test_unit(seed, item, 1u),
                                 test_unit(seed, item, 2u));
@@ -113,10 +114,10 @@ __kernel void sample(__global const BsdfSetup *setup, __global const uint *param
 
 /* Samples as they are. */
 __kernel void draw(__global const BsdfSetup *setup, __global const uint *params,
-                   __global float *out) {
+                   __global const float *energy, __global float *out) {
   uint seed = setup->seed;
   EACH_ITEM {
-    ModelParams p = model_params(test_point(setup), params, 1, 0);
+    ModelParams p = model_params(test_point(setup, energy), params, 1, 0);
     BsdfSample s = model_sample(p, test_vec3(setup->wo), test_unit(seed, item, 0u),
                                 test_unit(seed, item, 1u), test_unit(seed, item, 2u));
     ROW(0) = s.wi.x;
@@ -134,9 +135,10 @@ __kernel void draw(__global const BsdfSetup *setup, __global const uint *params,
 /* `directions`: rows of wo and wi, wo.z > 0. What is seen from wi's side is turned over, so that
  * its z is positive: no model tells left from right. */
 __kernel void pairs(__global const BsdfSetup *setup, __global const uint *params,
-                    __global const float *directions, __global float *out) {
+                    __global const float *energy, __global const float *directions,
+                    __global float *out) {
   EACH_ITEM {
-    BsdfPoint point = test_point(setup);
+    BsdfPoint point = test_point(setup, energy);
     vec3 wo = v3(directions[item], directions[ITEMS + item], directions[2 * ITEMS + item]);
     vec3 wi = v3(directions[3 * ITEMS + item], directions[4 * ITEMS + item],
                  directions[5 * ITEMS + item]);
@@ -189,12 +191,12 @@ CDL_INLINE vec3 test_coat_normal(uint seed, size_t item, vec3 wo) {
 
 /* Any input. `params` holds param_sets of them. */
 __kernel void stress(__global const BsdfSetup *setup, __global const uint *params,
-                     __global uint *out) {
+                     __global const float *energy, __global uint *out) {
   uint seed = setup->seed;
   EACH_ITEM {
     vec3 wo = test_direction(seed, item, 0u), wi = test_direction(seed, item, 4u);
     wi.z = test_unit(seed, item, 8u) < 0.4f ? -wi.z : wi.z;
-    BsdfPoint point = test_point(setup);
+    BsdfPoint point = test_point(setup, energy);
     point.base = test_extreme3(seed, item, 20u);
     point.throughput = test_extreme3(seed, item, 23u);
     vec3 coat_normal = test_coat_normal(seed, item, wo);

@@ -16,9 +16,11 @@
 #include <string.h>
 #include <time.h>
 
+#include "bsdf/energy.h"
 #include "bsdf/fresnel.h"
 #include "lib/rng.h"
 #include "lib/sampling.h"
+#include "scene/pack_parts.h"
 #include "tests/device/bsdf_chart.h"
 #include "tests/device/bsdf_models.h"
 #include "tests/device/chi2.h"
@@ -36,6 +38,7 @@ enum {
 static Harness *harness;
 static int built = -1; /* the model whose kernels the harness has */
 static int soak;
+static float energy[ENERGY_KINDS * ENERGY_KIND_WORDS];
 
 /* cosine and azimuth of wo; the last is seen at 89.9 degrees */
 static const double views[][2] = {{1, 0},    {0.8, 0.4}, {0.4, 2.1},
@@ -86,7 +89,8 @@ static BsdfPoint point_of(const BsdfCase *c) {
                      .throughput = v3_all(1),
                      .coat_normal = v3(n[0], n[1], sqrtf(1 - n[0] * n[0] - n[1] * n[1])),
                      .flags = c->flags,
-                     .front = !c->inside};
+                     .front = !c->inside,
+                     .energy = energy};
 }
 
 static BsdfSetup setup_of(const BsdfCase *c, vec3 wo, uint seed) {
@@ -171,13 +175,16 @@ static HarnessBuffer words_of(const BsdfCase *c) {
   return (HarnessBuffer){words, sizeof words};
 }
 
+static HarnessBuffer energy_buffer(void) { return (HarnessBuffer){energy, sizeof energy}; }
+
 static void run_samples(const BsdfCase *c, const Lobes *l, uint seed, Sampling *s) {
   static uint rows[BSDF_SAMPLE_ROWS * SAMPLES];
   BsdfSetup setup = setup_of(c, l->wo, seed);
   for (int i = 0; i < 2; i++) setup.charts[i] = bsdf_chart_setup(&l->charts[i]);
-  HarnessBuffer buffers[] = {{&setup, sizeof setup}, words_of(c), {rows, sizeof rows}};
+  HarnessBuffer buffers[] = {
+      {&setup, sizeof setup}, words_of(c), energy_buffer(), {rows, sizeof rows}};
   build(c->model);
-  harness_run(harness, "sample", SAMPLES / STRIP, buffers, 3);
+  harness_run(harness, "sample", SAMPLES / STRIP, buffers, 4);
   double sum = 0, squares = 0;
   *s = (Sampling){.none = 0};
   for (size_t i = 0; i < SAMPLES; i++) {
@@ -291,10 +298,11 @@ static void check_pairs(const BsdfCase *c, float *directions) {
   BsdfSetup setup = setup_of(c, v3(0, 0, 1), 0);
   HarnessBuffer buffers[] = {{&setup, sizeof setup},
                              words_of(c),
+                             energy_buffer(),
                              {directions, 6 * PAIRS * sizeof *directions},
                              {rows, sizeof rows}};
   build(c->model);
-  harness_run(harness, "pairs", PAIRS / STRIP, buffers, 4);
+  harness_run(harness, "pairs", PAIRS / STRIP, buffers, 5);
   for (size_t i = 0; i < PAIRS; i++) {
     const float *d = directions + i;
     vec3 wo = v3(d[0], d[PAIRS], d[2 * PAIRS]), wi = v3(d[3 * PAIRS], d[4 * PAIRS], d[5 * PAIRS]);
@@ -337,9 +345,10 @@ static void check_any_input(int model, uint *params, uint *faults) {
   setup.param_sets = PARAM_SETS;
   HarnessBuffer buffers[] = {{&setup, sizeof setup},
                              {params, (words + 1) * PARAM_SETS * sizeof *params},
+                             energy_buffer(),
                              {faults, STRESS * sizeof *faults}};
   build(model);
-  harness_run(harness, "stress", STRESS / STRIP, buffers, 3);
+  harness_run(harness, "stress", STRESS / STRIP, buffers, 4);
   for (size_t i = 0; i < STRESS; i++)
     if (faults[i]) name_faults(&any, "any input", i, faults[i]);
 }
@@ -361,9 +370,10 @@ static void test_any_input(void **state) {
 static const float *draw(const BsdfCase *c, vec3 wo) {
   static float rows[BSDF_DRAW_ROWS * SAMPLES];
   BsdfSetup setup = setup_of(c, wo, 12);
-  HarnessBuffer buffers[] = {{&setup, sizeof setup}, words_of(c), {rows, sizeof rows}};
+  HarnessBuffer buffers[] = {
+      {&setup, sizeof setup}, words_of(c), energy_buffer(), {rows, sizeof rows}};
   build(c->model);
-  harness_run(harness, "draw", SAMPLES / STRIP, buffers, 3);
+  harness_run(harness, "draw", SAMPLES / STRIP, buffers, 4);
   return rows;
 }
 
@@ -429,6 +439,10 @@ static int open_device(void **state) {
   if (!harness) return -1;
   const char *value = getenv("CDL_SOAK");
   soak = value && *value && *value != '0';
+  for (uint kind = 0; kind < ENERGY_KINDS; kind++) {
+    pack_energy_metal(kind, energy);
+    pack_energy_glass(kind, energy);
+  }
   print_message("%s\n", harness_name(harness));
   return 0;
 }
