@@ -13,19 +13,22 @@ static const ParamMember conductor[] = {ALPHA(CDL_CONDUCTOR_ALPHA, 0),
                                         {"eta", CDL_CONDUCTOR_ETA, 3, {0}, NULL, 0},
                                         {"k", CDL_CONDUCTOR_K, 3, {0}, NULL, 0},
                                         END};
-static const ParamMember dielectric[] = {{"ior", CDL_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0},
-                                         {"abbe", CDL_DIELECTRIC_ABBE, 1, {0}, NULL, 0},
-                                         END};
+static const ParamMember dielectric[] = {
+    {"ior", CDL_DIELECTRIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
+    {"abbe", CDL_DIELECTRIC_ABBE, 1, {0}, "abbeTexture", CHANNEL_R},
+    END};
 static const ParamMember rough_dielectric[] = {
     ALPHA(CDL_ROUGH_DIELECTRIC_ALPHA, 0),
-    {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.5f}, NULL, 0},
-    {"abbe", CDL_ROUGH_DIELECTRIC_ABBE, 1, {0}, NULL, 0},
+    {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
+    {"abbe", CDL_ROUGH_DIELECTRIC_ABBE, 1, {0}, "abbeTexture", CHANNEL_R},
     END};
-static const ParamMember plastic[] = {
-    ALPHA(CDL_PLASTIC_ALPHA, 0.1f), {"ior", CDL_PLASTIC_IOR, 1, {1.5f}, NULL, 0}, END};
-static const ParamMember retroreflector[] = {ALPHA(CDL_RETROREFLECTOR_ALPHA, 0.05f),
-                                             {"ior", CDL_RETROREFLECTOR_IOR, 1, {1.5f}, NULL, 0},
-                                             END};
+static const ParamMember plastic[] = {ALPHA(CDL_PLASTIC_ALPHA, 0.1f),
+                                      {"ior", CDL_PLASTIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
+                                      END};
+static const ParamMember retroreflector[] = {
+    ALPHA(CDL_RETROREFLECTOR_ALPHA, 0.05f),
+    {"ior", CDL_RETROREFLECTOR_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
+    END};
 
 static const ParamMember oren_nayar[] = {
     {"roughness", CDL_OREN_NAYAR_ROUGHNESS, 1, {0.5f}, "roughnessTexture", CHANNEL_R}, END};
@@ -44,7 +47,7 @@ static const ParamMember disney[] = {DISNEY("metallic", METALLIC, 0),
                                      DISNEY("clearcoatGloss", CLEARCOAT_GLOSS, 1),
                                      DISNEY("subsurface", SUBSURFACE, 0),
                                      DISNEY("specTrans", SPEC_TRANS, 0),
-                                     {"ior", CDL_DISNEY_IOR, 1, {1.5f}, NULL, 0},
+                                     {"ior", CDL_DISNEY_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
                                      DISNEY("diffTrans", DIFF_TRANS, 0),
                                      DISNEY("flatness", FLATNESS, 0),
                                      {"thin", CDL_DISNEY_THIN, 1, {0}, NULL, 0},

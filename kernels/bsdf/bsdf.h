@@ -18,6 +18,8 @@
 #include "lib/math.h"
 #include "lib/vec.h"
 
+#define BSDF_IOR_MIN 0.01f /* the least index; textures may say 0 */
+
 /* What all models have at a point, textures applied. */
 typedef struct BsdfPoint {
   vec3 base;            /* reflectance, base colour or transmittance, [0,1] */

@@ -18,7 +18,7 @@ typedef struct DielectricParams {
 } DielectricParams;
 
 CDL_INLINE DielectricParams dielectric_make(BsdfPoint point, float ior, float abbe) {
-  Dispersion dispersion = dispersion_choose(point, ior, abbe);
+  Dispersion dispersion = dispersion_choose(point, math_max(ior, BSDF_IOR_MIN), abbe);
   float inverse = 1.0f / dispersion.ior;
   DielectricParams p;
   p.transmittance = point.base;

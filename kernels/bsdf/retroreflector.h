@@ -26,7 +26,7 @@ CDL_INLINE RetroreflectorParams retroreflector_params(BsdfPoint point,
                                 param_float(params, CDL_RETROREFLECTOR_ALPHA + 1u, stride, i),
                                 (point.flags & CDL_MATERIAL_BECKMANN) != 0u,
                                 (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
-  p.ior = param_float(params, CDL_RETROREFLECTOR_IOR, stride, i);
+  p.ior = math_max(param_float(params, CDL_RETROREFLECTOR_IOR, stride, i), BSDF_IOR_MIN);
   return p;
 }
 
