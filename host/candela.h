@@ -248,9 +248,9 @@ cdl_Status cdl_text_write(const cdl_Log *log, const char *path, const char *text
 /* One material of a scene on a device, asked about directions. */
 typedef struct cdl_Bsdf cdl_Bsdf;
 
-/* `material` is a name, or an index from 0. Textures count as white: a note says so. CDL_USAGE for a
- * material that the scene does not have, one that scatters no light (unlit, interface), or while a
- * session uses the device, which is this one's until cdl_bsdf_free. The scene is not needed
+/* `material` is a name, or an index from 0. Textures count as white: a note says so. CDL_USAGE for
+ * a material that the scene does not have, one that scatters no light (unlit, interface), or while
+ * a session uses the device, which is this one's until cdl_bsdf_free. The scene is not needed
  * afterwards. */
 cdl_Status cdl_bsdf_create(const cdl_Log *log, cdl_Device *device, const cdl_Scene *scene,
                            const char *material, cdl_Bsdf **bsdf);
@@ -264,11 +264,11 @@ cdl_Status cdl_bsdf_create(const cdl_Log *log, cdl_Device *device, const cdl_Sce
  * A dispersive material answers with the mean over wavelengths, seen by white light. */
 cdl_Status cdl_bsdf_evaluate(cdl_Bsdf *bsdf, size_t count, const float *pairs, float *values);
 
-/* `wo`: count x 3; `values`: for each of them `samples` x (wi, weight red, green, blue, pdf, delta),
- * the weight f cos / pdf, pdf 0 and delta 1 for a delta lobe; black: no such path. The numbers are
- * a render's: low-discrepancy sequences from `seed`, another for each direction, which are numbered
- * from `first`. Each sample of a dispersive material is of one
- * wavelength. 1 <= samples <= CDL_MAX_SAMPLES. */
+/* `wo`: count x 3; `values`: for each of them `samples` x (wi, weight red, green, blue, pdf,
+ * delta), the weight f cos / pdf, pdf 0 and delta 1 for a delta lobe; black: no such path. The
+ * numbers are a render's: low-discrepancy sequences from `seed`, another for each direction, which
+ * are numbered from `first`. Each sample of a dispersive material is of one wavelength. 1 <=
+ * samples <= CDL_MAX_SAMPLES. */
 cdl_Status cdl_bsdf_sample(cdl_Bsdf *bsdf, size_t count, const float *wo, uint32_t first,
                            uint32_t samples, uint32_t seed, float *values);
 

@@ -61,8 +61,8 @@ void cli_progress_stage(void *user, const char *what, uint64_t done, uint64_t to
 void cli_progress_samples(uint64_t done, uint64_t total, double seconds, double time_limit);
 void cli_progress_erase(void);
 
-/* From now on SIGINT and SIGTERM set the flag that cli_interrupted() returns; another one, more than
- * a second later, ends the program at once. */
+/* From now on SIGINT and SIGTERM set the flag that cli_interrupted() returns; another one, more
+ * than a second later, ends the program at once. */
 void cli_catch_signals(void);
 int cli_interrupted(void);
 

@@ -52,7 +52,8 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
 cdl_Status build_gltf_layers(Builder *builder, uint32_t index, const json_t *json,
                              cdl_SceneMaterial *material);
 
-/* medium.c: CDL_medium, and KHR_materials_volume with KHR_materials_volume_scatter; *index is CDL_NONE for none. */
+/* medium.c: CDL_medium, and KHR_materials_volume with KHR_materials_volume_scatter; *index is
+ * CDL_NONE for none. */
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json, uint32_t *index);
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index);

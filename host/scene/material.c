@@ -63,9 +63,8 @@ static cdl_Status read_core(Builder *builder, const char *at, const json_t *json
 
 static cdl_Status read_khr(Builder *builder, uint32_t index, const json_t *json,
                            cdl_SceneMaterial *material) {
-  cdl_Status status =
-      build_params(builder, AT("/materials/%u/extensions/KHR_materials_ior", index),
-                   json_get_extension(json, "KHR_materials_ior"), ior, material);
+  cdl_Status status = build_params(builder, AT("/materials/%u/extensions/KHR_materials_ior", index),
+                                   json_get_extension(json, "KHR_materials_ior"), ior, material);
   if (!status) status = build_gltf_layers(builder, index, json, material);
   if (json_get_extension(json, "KHR_materials_unlit")) material->model = CDL_MODEL_UNLIT;
   return status;

@@ -134,6 +134,15 @@ static void read_flags(const json_t *json, cdl_SceneMaterial *material) {
                          (json_get_number(json, "specTrans", 0) > 0 || material->thin));
 }
 
+/* The tables know isotropic glass alone. */
+static void drop_compensation(Builder *builder, const char *at, cdl_SceneMaterial *material) {
+  int known = material->model != CDL_MODEL_ROUGH_DIELECTRIC || !material->anisotropic;
+  if (!material->energy_compensation || known || material->thin) return;
+  material->energy_compensation = 0;
+  document_note(builder->doc, NULL, at,
+                "energyCompensation is left out for glass that is rougher one way than the other.");
+}
+
 cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *json,
                               cdl_SceneMaterial *material) {
   const char *at = AT("/materials/%u/extensions/CDL_material", index);
@@ -150,6 +159,7 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   for (int c = 0; c < 3; c++) material->base[c] = model->base;
   material->base_texture = material->coat_normal_texture = texture_ref_none();
   read_flags(json, material);
+  drop_compensation(builder, at, material);
   cdl_Status status = CDL_OK;
   if (model->color) {
     json_get_numbers(json, model->color, 3, material->base);

@@ -126,7 +126,8 @@ static int is_plain_glass(const cdl_SceneMaterial *m) {
               m->param[WORD(SPECULAR)] == 1;
   for (uint32_t c = 0; c < 3; c++) plain &= m->param[WORD(SPECULAR_COLOR) + c] == 1;
   return plain && !any_word(m, WORD(CLEARCOAT), 1) && !any_word(m, WORD(SHEEN_COLOR), 3) &&
-         !any_word(m, WORD(IRIDESCENCE), 1) && !any_word(m, WORD(RETROREFLECTION), 1);
+         !any_word(m, WORD(ANISOTROPY_STRENGTH), 1) && !any_word(m, WORD(IRIDESCENCE), 1) &&
+         !any_word(m, WORD(RETROREFLECTION), 1);
 }
 
 static void become_glass(cdl_SceneMaterial *material) {

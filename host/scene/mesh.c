@@ -112,8 +112,11 @@ static cdl_Status read_attributes(Builder *builder, const PrimitiveSource *sourc
 static cdl_Status read_tangents(Builder *builder, cdl_SceneMesh *mesh) {
   const cdl_SceneMaterial *material = &builder->scene->materials[mesh->material];
   int mapped = material->normal_texture.texture != CDL_NONE;
-  int needed = mapped || material->anisotropic;
-  uint32_t set = mapped ? material->normal_texture.uv_set : 0;
+  int coated = material->coat_normal_texture.texture != CDL_NONE;
+  int needed = mapped || coated || material->anisotropic;
+  uint32_t set = mapped   ? material->normal_texture.uv_set
+                 : coated ? material->coat_normal_texture.uv_set
+                          : 0;
   if (!needed || mesh->tangents || !mesh->uv[set]) return CDL_OK;
   return mesh_make_tangents(mesh, set) ? document_out_of_memory(builder->doc) : CDL_OK;
 }

@@ -4,6 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/log.h"
+
 enum { MOST_KEYS = 33 };
 
 /* Of straight lines, over the size of the scene. */
@@ -114,7 +116,7 @@ static cdl_Status refine(const cdl_MotionSource *source, double open, double clo
 }
 
 /* The keys after the first become part of it. */
-static cdl_Status adopt(Keys *keys, struct cdl_Scene **scene) {
+static cdl_Status adopt(const cdl_Log *log, Keys *keys, struct cdl_Scene **scene) {
   struct cdl_Scene *first = keys->at[0];
   int moving = 0;
   for (int k = 1; k < keys->count; k++) {
@@ -123,6 +125,8 @@ static cdl_Status adopt(Keys *keys, struct cdl_Scene **scene) {
       moving |= !same(first->cameras[i].to_world, keys->at[k]->cameras[i].to_world, 12);
   }
   first->later = moving ? calloc((size_t)keys->count, sizeof *first->later) : NULL;
+  if (moving && !first->later)
+    return log_fail(log, CDL_BAD_INPUT, "%s: not enough memory for what moves", first->path);
   for (int k = 1; k < keys->count; k++) {
     if (first->later)
       first->later[first->later_count++] = keys->at[k];
@@ -152,7 +156,7 @@ cdl_Status motion_build(const cdl_MotionSource *source, double open, double clos
     keys.at[i] = NULL;
   }
   if (*changes) keys.count = 1;
-  if (!status) return adopt(&keys, scene);
-  free_keys(&keys);
+  if (!status) status = adopt(source->log, &keys, scene);
+  if (status) free_keys(&keys);
   return status;
 }

@@ -8,6 +8,7 @@
 typedef struct cdl_MotionSource {
   cdl_Status (*build)(void *user, double time, int first, struct cdl_Scene **scene);
   void *user;
+  const cdl_Log *log;
 } cdl_MotionSource;
 
 /* Builds the scene at the beginning of the exposure from `open` to `close`, s, and with it, in

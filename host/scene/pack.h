@@ -49,8 +49,8 @@ typedef struct cdl_Pack {
       texture_count, texel_count, light_count, environment_count, cell_count, medium_count,
       energy_count;
   uint32_t scene_medium;
-  uint32_t motion_keys; /* times at which moving things are known; below 2: nothing moves */
-  uint32_t camera_keys; /* where in the attributes the cameras' matrices at those times begin */
+  uint32_t motion_keys;  /* times at which moving things are known; below 2: nothing moves */
+  uint32_t camera_keys;  /* where in the attributes the cameras' matrices at those times begin */
   uint32_t *mesh_shapes; /* of each mesh of the trees that is placed by instances: its shape */
   cdl_EnvironmentParams environment_params;
   cdl_PackFeatures features;

@@ -130,6 +130,13 @@ static int is_boundary(const cdl_SceneMaterial *from) {
   return holds && !from->thin;
 }
 
+/* What leaves into the surface comes out again only where nothing may go in. */
+static int is_folded(const cdl_SceneMaterial *from) {
+  int mapped =
+      from->normal_texture.texture != CDL_NONE || from->coat_normal_texture.texture != CDL_NONE;
+  return mapped && !from->transmits;
+}
+
 static uint32_t material_flags(const cdl_SceneMaterial *from) {
   const float *e = from->emission;
   int emissive = (e[0] > 0 || e[1] > 0 || e[2] > 0) && from->model != CDL_MODEL_UNLIT &&
@@ -142,7 +149,7 @@ static uint32_t material_flags(const cdl_SceneMaterial *from) {
          (from->alpha_mode == CDL_ALPHA_BLEND ? CDL_MATERIAL_BLEND : 0u) |
          (is_boundary(from) ? CDL_MATERIAL_BOUNDARY : 0u) | (from->thin ? CDL_MATERIAL_THIN : 0u) |
          (from->energy_compensation ? CDL_MATERIAL_ENERGY_COMPENSATED : 0u) |
-         (from->normal_texture.texture != CDL_NONE ? CDL_MATERIAL_NORMAL_MAPPED : 0u);
+         (is_folded(from) ? CDL_MATERIAL_NORMAL_MAPPED : 0u);
 }
 
 static void pack_param_texture(const cdl_SceneParamTexture *from, cdl_ParamTexture *to) {

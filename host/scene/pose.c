@@ -33,8 +33,11 @@ static const char *channel_pointer(const json_t *channel, char text[256]) {
 
 /* What an array is before an animation changes one of its elements. */
 static json_t *default_array(const Document *doc, const SchemaPlace *place, size_t count) {
-  static const char *const zeros[] = {"translation", "offset", "weights", "emissiveFactor",
-                                      "sheenColorFactor"};
+  static const char *const zeros[] = {
+      "translation",    "offset",           "weights",
+      "emissiveFactor", "sheenColorFactor", "multiscatterColor",
+      "absorption",     "scattering",       "multiscatterColorFactor",
+      "emission",       "shutter"};
   const char *name = place->member->name;
   double fill = 1;
   for (size_t i = 0; i < sizeof zeros / sizeof *zeros; i++)

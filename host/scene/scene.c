@@ -190,7 +190,7 @@ static cdl_Status exposure(Load *load, double time, double *open, double *close,
 static cdl_Status load_scene(Document *doc, const cdl_SceneOptions *options,
                              struct cdl_Scene **scene) {
   Load load = {doc, options};
-  cdl_MotionSource source = {build_pose, &load};
+  cdl_MotionSource source = {build_pose, &load, doc->log};
   double open, close, time = fmax(options->time, 0);
   int exposes, changes = 0;
   cdl_Status status = exposure(&load, time, &open, &close, &exposes);

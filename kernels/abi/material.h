@@ -51,7 +51,7 @@
 #define CDL_MATERIAL_BOUNDARY 64u /* going through it means entering or leaving `medium` */
 #define CDL_MATERIAL_THIN 128u    /* a sheet: what goes in comes out on the other side */
 #define CDL_MATERIAL_ENERGY_COMPENSATED 256u
-#define CDL_MATERIAL_NORMAL_MAPPED 512u
+#define CDL_MATERIAL_NORMAL_MAPPED 512u /* and nothing goes through */
 
 /* A texture look-up: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5. */
 typedef struct cdl_TextureSlot {

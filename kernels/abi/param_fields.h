@@ -44,10 +44,10 @@ enum {
   CDL_GLTF_PARAMS
 };
 
-/* The same three and those of the extensions, [0,1] unless it says otherwise: colours of three words;
- * ROTATION is the cosine and sine of the angle, DIRECTION a vector of any length in the tangent
- * plane; indices > 0, thickness of the film in nm, THICKNESS > 0 where the surface bounds a volume;
- * DISPERSION is 20 over Abbe's number. */
+/* The same three and those of the extensions, [0,1] unless it says otherwise: colours of three
+ * words; ROTATION is the cosine and sine of the angle, DIRECTION a vector of any length in the
+ * tangent plane; indices > 0, thickness of the film in nm, THICKNESS > 0 where the surface bounds a
+ * volume; DISPERSION is 20 over Abbe's number. */
 enum {
   CDL_PARAM(GLTF_LAYERED, METALLIC, 1),
   CDL_PARAM(GLTF_LAYERED, ROUGHNESS, 1),

@@ -41,6 +41,7 @@ enum {
 /* Bits of CDL_WORK_VERTEX. */
 #define CDL_VERTEX_FRONT 1u     /* the path comes from the geometric front side */
 #define CDL_VERTEX_INTERFACE 2u /* the material is the boundary of a medium and nothing else */
+#define CDL_VERTEX_MIRRORED 4u  /* the bitangent is tangent x normal, seen from the path's side */
 #define CDL_VERTEX_FLAGS 8u     /* from this bit on: the material's flags, CDL_MATERIAL_* */
 
 /* Queues, in the order in which they lie after a sort. Each model has two, the second for emissive

@@ -29,6 +29,7 @@ typedef struct BsdfPoint {
   float channel_choice; /* [0,1), of this vertex: for the choice of a colour channel */
   uint flags;           /* CDL_MATERIAL_* */
   int front;            /* 1: wo is on the front of the geometry, outside */
+  int mirrored;         /* 1: the texture's bitangent is along -Y */
   /* energy.h's tables, for models that compensate; else NULL */
   CDL_GLOBAL const float *energy;
 } BsdfPoint;

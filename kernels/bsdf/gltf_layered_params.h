@@ -105,8 +105,8 @@ CDL_INLINE void gltf_read_base(GltfLayeredParams *p, CDL_GLOBAL const uint *para
 }
 
 /* The direction of the words, turned by the rotation of the words. */
-CDL_INLINE void gltf_read_direction(GltfLayeredParams *p, CDL_GLOBAL const uint *params,
-                                    size_t stride, size_t i) {
+CDL_INLINE void gltf_read_direction(GltfLayeredParams *p, int mirrored,
+                                    CDL_GLOBAL const uint *params, size_t stride, size_t i) {
   float cosine = param_float(params, CDL_GLTF_LAYERED_ANISOTROPY_ROTATION, stride, i);
   float sine = param_float(params, CDL_GLTF_LAYERED_ANISOTROPY_ROTATION + 1u, stride, i);
   float x = param_float(params, CDL_GLTF_LAYERED_ANISOTROPY_DIRECTION, stride, i);
@@ -117,11 +117,12 @@ CDL_INLINE void gltf_read_direction(GltfLayeredParams *p, CDL_GLOBAL const uint 
   int known = length > 1e-6f;
   float scale = 1.0f / (known ? length : 1.0f);
   p->direction_x = known ? turned_x * scale : 1.0f;
+  scale = mirrored ? -scale : scale;
   p->direction_y = known ? turned_y * math_after(p->direction_x, scale) : 0.0f;
 }
 
 /* alpha along the direction of anisotropy is mix(alpha, 1, strength^2). */
-CDL_INLINE void gltf_read_surface(GltfLayeredParams *p, CDL_GLOBAL const uint *params,
+CDL_INLINE void gltf_read_surface(GltfLayeredParams *p, int mirrored, CDL_GLOBAL const uint *params,
                                   size_t stride, size_t i) {
   float roughness = gltf_factor(1, params, CDL_GLTF_LAYERED_ROUGHNESS, stride, i);
   float strength =
@@ -130,7 +131,7 @@ CDL_INLINE void gltf_read_surface(GltfLayeredParams *p, CDL_GLOBAL const uint *p
   float along = GLTF_ANISOTROPY ? math_lerp(alpha, 1.0f, strength * strength) : alpha;
   p->direction_x = 1.0f;
   p->direction_y = 0.0f;
-  if (GLTF_ANISOTROPY) gltf_read_direction(p, params, stride, i);
+  if (GLTF_ANISOTROPY) gltf_read_direction(p, mirrored, params, stride, i);
   p->smooth = along < GLTF_ALPHA_MIN;
   p->surface = microfacet_surface(math_max(along, GLTF_ALPHA_MIN),
                                   math_max(math_after(along, alpha), GLTF_ALPHA_MIN), 0, 1);
@@ -142,7 +143,11 @@ CDL_INLINE void gltf_read_transmission(GltfLayeredParams *p, BsdfPoint point,
       GLTF_TRANSMITS ? param_float(params, CDL_GLTF_LAYERED_THICKNESS, stride, i) : 0.0f;
   float dispersion =
       GLTF_DISPERSION ? param_float(params, CDL_GLTF_LAYERED_DISPERSION, stride, i) : 0.0f;
-  p->solid = thickness > 0.0f;
+  p->transmission =
+      gltf_factor(GLTF_TRANSMISSION, params, CDL_GLTF_LAYERED_TRANSMISSION, stride, i);
+  p->diffuse_transmission = gltf_factor(GLTF_DIFFUSE_TRANSMISSION, params,
+                                        CDL_GLTF_LAYERED_DIFFUSE_TRANSMISSION, stride, i);
+  p->solid = (thickness > 0.0f) & (p->transmission + p->diffuse_transmission > 0.0f);
   p->outside = p->solid ? point.front : 1;
   int disperses = p->solid && dispersion > 0.0f;
   Dispersion d = {v3_all(1.0f), p->ior, 0.0f};
@@ -152,10 +157,6 @@ CDL_INLINE void gltf_read_transmission(GltfLayeredParams *p, BsdfPoint point,
   p->channels = d.weight;
   p->eta = p->solid ? (point.front ? ior : 1.0f / ior) : 1.0f;
   p->smooth = p->smooth || (p->solid && width < GLTF_WIDTH_MIN);
-  p->transmission =
-      gltf_factor(GLTF_TRANSMISSION, params, CDL_GLTF_LAYERED_TRANSMISSION, stride, i);
-  p->diffuse_transmission = gltf_factor(GLTF_DIFFUSE_TRANSMISSION, params,
-                                        CDL_GLTF_LAYERED_DIFFUSE_TRANSMISSION, stride, i);
   p->diffuse_tint = GLTF_DIFFUSE_TRANSMISSION
                         ? param_vec3(params, CDL_GLTF_LAYERED_DIFFUSE_TRANSMISSION_COLOR, stride, i)
                         : v3_all(0.0f);
@@ -188,7 +189,7 @@ CDL_INLINE GltfLayeredParams gltf_layered_params(BsdfPoint point, CDL_GLOBAL con
   GltfLayeredParams p;
   p.base = point.base;
   gltf_read_base(&p, params, stride, i);
-  gltf_read_surface(&p, params, stride, i);
+  gltf_read_surface(&p, point.mirrored, params, stride, i);
   gltf_read_transmission(&p, point, params, stride, i);
   if (GLTF_IRIDESCENCE) gltf_read_film(&p, params, stride, i);
   if (GLTF_SHEEN) gltf_read_sheen(&p, params, stride, i);

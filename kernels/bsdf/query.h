@@ -45,6 +45,7 @@ CDL_INLINE BsdfParams query_params(CDL_GLOBAL const cdl_Material *material,
   point.channel_choice = channel_choice;
   point.flags = material->flags;
   point.front = front;
+  point.mirrored = !front;
   point.energy = energy_table;
   return bsdf_params(point, (CDL_GLOBAL const uint *)material->param, 1, 0);
 }

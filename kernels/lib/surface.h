@@ -64,7 +64,9 @@ CDL_INLINE SurfacePoint surface_point(CDL_GLOBAL const cdl_BvhInstance *instance
   s.normal = v3_select(smooth, normal, s.geometric);
   vec3 tangent = transform_direction(to_world, barycentric(t0, t1, t2, u, v));
   s.tangent = v3_select(has_tangent, tangent, v3_all(0.0f));
-  s.handedness = (has_tangent & (handedness < 0.0f)) ? -1.0f : 1.0f;
+  float volume = v3_dot(to_world.x, v3_cross(to_world.y, to_world.z));
+  int turned = (has_tangent & (handedness < 0.0f)) ^ (volume < 0.0f); /* mirrors turn it */
+  s.handedness = turned ? -1.0f : 1.0f;
   return s;
 }
 

@@ -19,6 +19,7 @@ typedef struct Vertex {
   uint counts;
   int scatters; /* 0: the path is as deep as it may be */
   int front;
+  int mirrored;
   uint flags; /* CDL_MATERIAL_* */
   PathRandom random;
   MediaStack before, beyond; /* media on the path's side of the surface, and on the other */
@@ -37,6 +38,7 @@ CDL_INLINE Vertex load_vertex(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
   at.scatters = counts_depth(at.counts) < params->max_depth;
   uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
   at.front = (vertex & CDL_VERTEX_FRONT) != 0u;
+  at.mirrored = (vertex & CDL_VERTEX_MIRRORED) != 0u;
   at.flags = vertex >> CDL_VERTEX_FLAGS;
   at.random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
   at.before = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
@@ -62,6 +64,7 @@ CDL_INLINE BsdfPoint load_point(Vertex at, CDL_GLOBAL const uint *path, CDL_GLOB
   point.channel_choice = 0.0f;
   point.flags = at.flags;
   point.front = at.front;
+  point.mirrored = at.mirrored;
 #ifdef CDL_SHADE_COATED
   point.coat_normal = frame_to_local(at.shading, state_vec3(work, CDL_WORK_COAT_NORMAL, stride, i));
 #endif
@@ -78,7 +81,7 @@ CDL_INLINE BsdfPoint load_point(Vertex at, CDL_GLOBAL const uint *path, CDL_GLOB
  * light is lost and no fringe goes dark, however steep the normal map is. It is the microsurface of
  * Schüssler et al. 2017, its second facet a mirror, without the shadows. A direction above the
  * plane then stands for two, itself and its mirror image; densities and values of both add up. */
-#if defined(CDL_NORMAL_MAPS) && !CDL_SHADE_TRANSMITS
+#ifdef CDL_NORMAL_MAPS
 #define CDL_SHADE_FOLDS 1
 #else
 #define CDL_SHADE_FOLDS 0

@@ -53,6 +53,7 @@ __kernel void surface(CDL_CONSTANT cdl_Params *restrict params,
     normal = surface_face_path(v3_select(front, normal, v3_neg(normal)), wo);
     uint vertex = front ? CDL_VERTEX_FRONT : 0u;
     vertex |= material->model == CDL_MODEL_INTERFACE ? CDL_VERTEX_INTERFACE : 0u;
+    vertex |= (point.handedness > 0.0f) == front ? 0u : CDL_VERTEX_MIRRORED;
     vertex |= material->flags << CDL_VERTEX_FLAGS;
 
     state_set_vec3(work, CDL_WORK_POSITION, stride, i, point.position);

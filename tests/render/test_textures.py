@@ -9,7 +9,7 @@ import numpy as np
 
 from support.render import render
 from support.scene import CLAMP, MIRROR, REPEAT, Scene
-from support.shapes import look_at, quad, scale, turn
+from support.shapes import look_at, move, quad, scale, turn
 from support.verdict import agrees, check, main, near
 
 RANDOM = np.random.default_rng(11)
@@ -267,6 +267,9 @@ def bumps(material, sky=1.0):
     s = Scene()
     codes = np.round((normals + 1) / 2 * 255).astype(np.uint8)
     s.add(square(), material(s, s.texture(codes, nearest=True)))
+    pane = {"KHR_materials_transmission": {"transmissionFactor": 1}}  # elsewhere, and of no effect
+    s.add(quad((0, 0, -9), (0.1, 0, 0), (0, 0.1, 0)),
+          s.material(base=(1, 1, 1), metallic=0, roughness=0.5, extensions=pane))
     s.environment(radiance=sky)
     s.camera(look_at((2, 0.5, 1), (0, 0, 0)), half_height=0.2)
     return render(s, (32, 32), 256, 1)
@@ -285,12 +288,57 @@ def test_normal_maps_keep_the_light():
         return s.material({"model": "conductor", "eta": 0, "k": 1, "alpha": 0.3,
                            "energyCompensation": True}, normalTexture=normals)
 
+    def layered(s, normals):  # a faint coat over white metal
+        return s.material(base=(1, 1, 1), metallic=1, roughness=0.1, normalTexture=normals,
+                          extensions={"KHR_materials_iridescence": {"iridescenceFactor": 0.0},
+                                      "KHR_materials_clearcoat": {"clearcoatFactor": 0.01}})
+
     for name, material, loss in (("diffuse", white, 0.002), ("a mirror", mirror, 1e-6),
-                                 ("metal", metal, 0.01)):
+                                 ("metal", metal, 0.01), ("a layered metal", layered, 0.03)):
         picture = bumps(material)
         mean = picture.rgb.mean()
         check("%s with bumps" % name, 1 - loss < mean < 1.002, "%g" % mean)
         check("%s has no dark fringe" % name, picture.rgb.min() > 0.75, "%g" % picture.rgb.min())
+
+
+def test_mirrored_instances():
+    """A mirrored node shows its normal map alike whether it shares its mesh or not."""
+    pictures = []
+    for shared in (False, True):
+        s = Scene()
+        codes = np.array([[[150, 220, 200]]], np.uint8)
+        white = s.material({"model": "diffuse", "reflectance": [1, 1, 1]},
+                           normalTexture=s.texture(codes))
+        mesh = s.mesh(square(), white)
+        for matrix in ([scale(1, -1, 1)] + ([move(0, 0, -50)] if shared else [])):
+            s.node(matrix, mesh=mesh)
+        s.light("directional", (1, 1, 1), look_at(SUN, (0, 0, 0)))
+        s.camera(look_at((0, 0, 3), (0, 0, 0)), half_height=0.9)
+        pictures.append(render(s, (8, 8), 16, 1).rgb)
+    near("mirrored instances", pictures[1] / pictures[0], 1, 1e-4)
+
+
+def test_anisotropy_of_mirrored_textures():
+    """Where the picture lies mirrored the rotation turns the other way, seen from either side."""
+    for side in (1, -1):
+        pictures = []
+        for hand, angle in ((1, 0.6), (-1, -0.6)):
+            s = Scene()
+            brushed = s.material(base=(1, 1, 1), metallic=1, roughness=0.4, doubleSided=True,
+                                 extensions={"KHR_materials_anisotropy": {
+                                     "anisotropyStrength": 0.9, "anisotropyRotation": angle}})
+            shape = square()
+            shape["normals"] = np.broadcast_to((0.0, 0, 1), (4, 3))
+            shape["tangents"] = np.broadcast_to((1.0, 0, 0, hand), (4, 4))
+            s.add(shape, brushed)
+            s.light("directional", (1, 1, 1), look_at((1, 2, 2 * side), (0, 0, 0)))
+            s.camera(look_at((0.5, -0.5, 3 * side), (0, 0, 0)), half_height=0.5)
+            pictures.append(render(s, (8, 8), 16, 1).rgb)
+        near("anisotropy, side %d" % side, pictures[1] / pictures[0], 1, 1e-3)
+        if side == 1:
+            front = pictures[0].mean()
+        else:  # the same grooves seen through the plane: light and view mirrored by it
+            near("anisotropy from behind", pictures[0].mean(), front, 1e-3)
 
 
 def test_normal_map_from_below():
@@ -311,4 +359,5 @@ def test_normal_map_from_below():
 if __name__ == "__main__":
     main(test_texels, test_wrapping, test_transform, test_second_coordinates, test_vertex_colors,
          test_alpha_cutoff, test_data_textures, test_emissive_texture, test_normal_map,
-         test_normal_maps_keep_the_light, test_normal_map_from_below)
+         test_normal_maps_keep_the_light, test_mirrored_instances,
+         test_anisotropy_of_mirrored_textures, test_normal_map_from_below)
