@@ -183,7 +183,7 @@ static int parse_picture(int key, const char *value, RenderOptions *options) {
   return 1;
 }
 
-/* Options about the scene, the device and the files beside the picture; 0 if `key` is none. */
+/* Options about the scene and the device; 0 if `key` is none. */
 static int parse_other(int key, const char *value, RenderOptions *options) {
   static const char *const schedules[] = {"auto", "wavefront", "fused", NULL};
   static const char *const widths[] = {"auto", "2", "8", NULL};
@@ -221,6 +221,15 @@ static int parse_other(int key, const char *value, RenderOptions *options) {
   case KEY_MATH:
     s->fast_math = cli_choice("--math", value, maths);
     break;
+  default:
+    return 0;
+  }
+  return 1;
+}
+
+/* Options about what is written beside the picture, and said; 0 if `key` is none. */
+static int parse_reports(int key, const char *value, RenderOptions *options) {
+  switch (key) {
   case KEY_CHECKPOINT:
     options->checkpoint = value;
     break;
@@ -255,8 +264,9 @@ static error_t parse_option(int key, char *value, struct argp_state *state) {
     options->scene = value;
     return 0;
   }
-  return parse_picture(key, value, options) || parse_other(key, value, options) ? 0
-                                                                                : ARGP_ERR_UNKNOWN;
+  int known = parse_picture(key, value, options) || parse_other(key, value, options) ||
+              parse_reports(key, value, options);
+  return known ? 0 : ARGP_ERR_UNKNOWN;
 }
 
 static const struct argp parser = {

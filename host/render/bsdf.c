@@ -68,19 +68,6 @@ static cdl_Status check(const cdl_Log *log, const cdl_Scene *scene, uint32_t ind
   return CDL_OK;
 }
 
-static int disperses(const cdl_Material *m) {
-  switch (m->model) {
-  case CDL_MODEL_DIELECTRIC:
-    return m->param[CDL_DIELECTRIC_ABBE] > 0;
-  case CDL_MODEL_ROUGH_DIELECTRIC:
-    return m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0;
-  case CDL_MODEL_GLTF_LAYERED:
-    return m->param[CDL_GLTF_LAYERED_DISPERSION] > 0;
-  default:
-    return 0;
-  }
-}
-
 /* --- The device. */
 
 static cdl_Status make_buffers(cdl_Bsdf *b, const cdl_Pack *pack, uint32_t index) {
@@ -115,7 +102,7 @@ static cdl_Status create(cdl_Bsdf *b, const cdl_Scene *scene, uint32_t index) {
   if (!status) status = pack_energy(b->log, &pack);
   if (!status) status = set_options(b->device, &pack.materials[index]);
   if (!status) status = make_buffers(b, &pack, index);
-  if (!status) b->wavelengths = disperses(&pack.materials[index]) ? WAVELENGTHS : 0;
+  if (!status) b->wavelengths = material_disperses(&pack.materials[index]) ? WAVELENGTHS : 0;
   pack_free(&pack);
   return status;
 }

@@ -62,6 +62,9 @@ typedef struct cdl_Pack {
  * failure. */
 cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
 
+/* Whether paths through the material go on with one colour channel each. */
+int material_disperses(const cdl_Material *material);
+
 /* Radius of the sphere around the world's bounds, m. */
 double pack_scene_radius(const cdl_Pack *pack);
 

@@ -183,6 +183,19 @@ static void pack_material(const cdl_SceneMaterial *from, cdl_Pack *pack, cdl_Mat
   to->emission_texture = pack_slot(&from->emission_texture, 1);
 }
 
+int material_disperses(const cdl_Material *m) {
+  switch (m->model) {
+  case CDL_MODEL_DIELECTRIC:
+    return m->param[CDL_DIELECTRIC_ABBE] > 0;
+  case CDL_MODEL_ROUGH_DIELECTRIC:
+    return m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0;
+  case CDL_MODEL_GLTF_LAYERED:
+    return m->param[CDL_GLTF_LAYERED_DISPERSION] > 0;
+  default:
+    return 0;
+  }
+}
+
 static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
   int emissive = (m->flags & CDL_MATERIAL_EMISSIVE) != 0;
   features->textures |= m->base_texture.texture != CDL_NONE ||
@@ -190,9 +203,7 @@ static void note_features(const cdl_Material *m, cdl_PackFeatures *features) {
                         m->coat_normal_texture.texture != CDL_NONE || m->texture_count > 0;
   features->energy_compensation |= (m->flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u;
   features->normal_maps |= (m->flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
-  features->dispersion |=
-      (m->model == CDL_MODEL_DIELECTRIC && m->param[CDL_DIELECTRIC_ABBE] > 0) ||
-      (m->model == CDL_MODEL_ROUGH_DIELECTRIC && m->param[CDL_ROUGH_DIELECTRIC_ABBE] > 0);
+  features->dispersion |= material_disperses(m);
   features->emission_textures |= emissive && m->emission_texture.texture != CDL_NONE;
 }
 

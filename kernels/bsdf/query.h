@@ -12,16 +12,7 @@
 #define CDL_SHADE_MODEL CDL_MODEL_DIFFUSE
 #endif
 
-/* All of glTF's layers: one material costs little. */
-#define CDL_GLTF_ANISOTROPY
-#define CDL_GLTF_CLEARCOAT
-#define CDL_GLTF_SHEEN
-#define CDL_GLTF_IRIDESCENCE
-#define CDL_GLTF_TRANSMISSION
-#define CDL_GLTF_DIFFUSE_TRANSMISSION
-#define CDL_GLTF_RETROREFLECTION
-#define CDL_GLTF_DISPERSION
-
+#include "bsdf/all_layers.h" /* one material costs little */
 #include "bsdf/model.h"
 #include "lib/frame.h"
 

@@ -3,15 +3,7 @@
 #ifndef CANDELA_TESTS_BSDF_SETUP_H
 #define CANDELA_TESTS_BSDF_SETUP_H
 
-/* glTF's material with all its layers. */
-#define CDL_GLTF_ANISOTROPY
-#define CDL_GLTF_CLEARCOAT
-#define CDL_GLTF_SHEEN
-#define CDL_GLTF_IRIDESCENCE
-#define CDL_GLTF_TRANSMISSION
-#define CDL_GLTF_DIFFUSE_TRANSMISSION
-#define CDL_GLTF_RETROREFLECTION
-#define CDL_GLTF_DISPERSION
+#include "bsdf/all_layers.h"
 
 #define BSDF_STRIP 16u /* items of a work-item, neighbours */
 

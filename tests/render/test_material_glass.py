@@ -7,7 +7,9 @@ import numpy as np
 from support.cells import Cells, front_and_back, layers, tilted
 from support.color import TO_RGB, matching_functions
 from support.optics import fresnel_dielectric
-from support.shapes import box, joined, quad
+from support.render import render
+from support.scene import Scene
+from support.shapes import box, joined, look_at, quad, sphere
 from support.verdict import agrees, check, main, near, within
 
 SQUARE = quad((0, 0, 0), (0.95, 0, 0), (0, 0.95, 0))
@@ -254,6 +256,22 @@ def test_suns_behind_glass():
     same_light("a directional light as a texel", pictures, cells, [name for name, _ in thin])
 
 
+def test_layered_dispersion_alone():
+    """KHR_materials_dispersion of rough glass needs no other dispersive material in the scene."""
+    films = []
+    for dispersion in (0, 5):
+        s = Scene()
+        glass = {"KHR_materials_transmission": {"transmissionFactor": 1},
+                 "KHR_materials_volume": {"thicknessFactor": 1},
+                 "KHR_materials_dispersion": {"dispersion": dispersion}}
+        s.add(sphere(0.8, (0, 0, 0), 24, 12, smooth=True),
+              s.material(base=(1, 1, 1), metallic=0, roughness=0.1, extensions=glass))
+        s.environment(radiance=1)
+        s.camera(look_at((0, 0, 3), (0, 0, 0)), yfov=40)
+        films.append(render(s, (32, 32), 16, 6).sha256)
+    check("rough layered glass disperses", films[0] != films[1])
+
+
 if __name__ == "__main__":
     main(test_prisms, test_thin_sheets, test_interiors, test_plastic, test_lamps_behind_glass,
-         test_suns_behind_glass)
+         test_suns_behind_glass, test_layered_dispersion_alone)

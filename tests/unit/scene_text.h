@@ -85,4 +85,21 @@ static inline const char *scene_data(const void *data, size_t size) {
   return text;
 }
 
+#define SCENE_PIXEL                                                                                \
+  "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVQYV2P4z/"           \
+  "AfAAQAAf+I0P3MAAAAAElFTkSuQmCC"
+
+/* A scene that holds one material, with the extensions that it uses, an image of one pixel and two
+ * textures of it. */
+static inline struct cdl_Scene *material_scene(const char *used, const char *material) {
+  struct cdl_Scene *scene =
+      scene_from("{\"asset\":{\"version\":\"2.0\"},\"extensionsUsed\":[%s],\"materials\":[{%s}],"
+                 "\"images\":[{\"uri\":\"" SCENE_PIXEL "\"}],\"samplers\":[{\"wrapS\":33071,"
+                 "\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":0},"
+                 "{\"source\":0,\"sampler\":0}]}",
+                 used, material);
+  if (!scene) fputs(scene_errors, stderr);
+  return scene;
+}
+
 #endif

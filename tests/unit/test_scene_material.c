@@ -12,22 +12,6 @@
 
 #define HEAD "{\"asset\":{\"version\":\"2.0\"},"
 #define NEAR(a, b) assert_true(fabs((double)(a) - (double)(b)) < 1e-5)
-#define PIXEL                                                                                      \
-  "data:image/png;base64,iVBORw0KGgoAAAANSUhEUgAAAAEAAAABCAIAAACQd1PeAAAADElEQVQYV2P4z/"           \
-  "AfAAQAAf+I0P3MAAAAAElFTkSuQmCC"
-
-/* A scene that holds one material, with the extensions that it uses. */
-static struct cdl_Scene *material_scene(const char *used, const char *material) {
-  struct cdl_Scene *scene =
-      scene_from(HEAD "\"extensionsUsed\":[%s],\"materials\":[{%s}],"
-                      "\"images\":[{\"uri\":\"" PIXEL "\"}],\"samplers\":[{\"wrapS\":33071,"
-                      "\"wrapT\":33648,\"magFilter\":9728}],\"textures\":[{\"source\":0},"
-                      "{\"source\":0,\"sampler\":0}]}",
-                 used, material);
-  if (!scene) print_message("%s", scene_errors);
-  return scene;
-}
-
 static void test_core(void **state) {
   (void)state;
   struct cdl_Scene *scene = material_scene(
