@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/angle.h"
 #include "core/log.h"
 
 static cdl_Status fail_unknown(const cdl_Log *log, const cdl_Scene *scene, const char *name) {
@@ -49,14 +50,13 @@ void camera_image_size(const cdl_SceneCamera *camera, uint32_t *width, uint32_t 
 void camera_params(const cdl_SceneCamera *camera, uint32_t width, uint32_t height,
                    cdl_CameraParams *params) {
   double aspect = (double)width / height;
-  double half = camera->orthographic ? camera->ymag : tan(0.5 * camera->yfov);
+  double half = camera->orthographic ? camera->ymag : angle_tan(0.5 * camera->yfov);
   *params = (cdl_CameraParams){
       .scale = {(float)(half * aspect), (float)half},
       .lens_radius = camera->aperture_radius,
       .inverse_focus = camera->focus_distance > 0.0f ? 1.0f / camera->focus_distance : 1.0f,
       .orthographic = camera->orthographic != 0,
       .blades = camera->blades ? camera->blades : 1};
-  params->blade_cos = (float)cos(M_PI / params->blades);
-  params->blade_sin = (float)sin(M_PI / params->blades);
+  math_sincos_2pi(0.5f / (float)params->blades, &params->blade_sin, &params->blade_cos);
   memcpy(params->to_world, camera->to_world, sizeof params->to_world);
 }

@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "core/angle.h"
 #include "scene/matrix.h"
 #include "scene/scene.h"
 
@@ -41,7 +42,7 @@ void scene_frame_camera(const float bounds[2][3], cdl_SceneCamera *camera) {
   normalise(axes[0]);
   cross(back, axes[0], axes[1]);
   double yfov = 40 * M_PI / 180;
-  double distance = framing_distance(bounds, axes, tan(yfov / 2)) * 1.05;
+  double distance = framing_distance(bounds, axes, angle_tan(yfov / 2)) * 1.05;
   if (!(distance > 0)) distance = 1;
   *camera = (cdl_SceneCamera){.name = (char *)name,
                               .yfov = (float)yfov,

@@ -58,8 +58,10 @@ static cdl_Status check_rotations(Document *doc, const char *at, const Accessor 
   if (!accessor_has_data(doc, a)) return CDL_OK;
   for (size_t i = cubic ? 1 : 0; i < a->count; i += cubic ? 3 : 1) {
     double length = 0;
-    for (uint32_t c = 0; c < 4; c++)
-      length += pow(accessor_component(a, accessor_element(doc, a, i), c) / scale, 2);
+    for (uint32_t c = 0; c < 4; c++) {
+      double x = accessor_component(a, accessor_element(doc, a, i), c) / scale;
+      length += x * x;
+    }
     if (!(fabs(sqrt(length) - 1) <= UNIT_TOLERANCE))
       return document_fail(doc, at, "ACCESSOR_ANIMATION_SAMPLER_OUTPUT_NON_NORMALIZED_QUATERNION",
                            "rotation %zu has length %g, not 1.", i, sqrt(length));

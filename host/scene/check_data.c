@@ -81,7 +81,10 @@ static cdl_Status check_directions(Document *doc, const char *at, const Accessor
   for (size_t k = 0; k < a->count; k++) {
     const uint8_t *element = accessor_element(doc, a, k);
     double length = 0, sign = tangents ? accessor_component(a, element, 3) / scale : 1;
-    for (uint32_t c = 0; c < 3; c++) length += pow(accessor_component(a, element, c) / scale, 2);
+    for (uint32_t c = 0; c < 3; c++) {
+      double x = accessor_component(a, element, c) / scale;
+      length += x * x;
+    }
     if (!(fabs(sqrt(length) - 1) <= tolerance))
       return document_fail(doc, at, "ACCESSOR_VECTOR3_NON_UNIT", "vector %zu has length %g, not 1.",
                            k, sqrt(length));

@@ -110,7 +110,10 @@ static cdl_Status check_transform(Document *doc, uint32_t i, const json_t *node)
   if (matrix && !is_trs(m))
     return document_fail(doc, AT("/nodes/%u/matrix", i), "NODE_MATRIX_NON_TRS",
                          "it is not a product of translation, rotation and scale.");
-  for (int k = 0; k < 4; k++) length += pow(json_number_value(json_array_get(rotation, k)), 2);
+  for (int k = 0; k < 4; k++) {
+    double x = json_number_value(json_array_get(rotation, k));
+    length += x * x;
+  }
   if (rotation && fabs(sqrt(length) - 1) > UNIT_TOLERANCE)
     return document_fail(doc, AT("/nodes/%u/rotation", i), "ROTATION_NON_UNIT",
                          "the quaternion has length %g, not 1.", sqrt(length));

@@ -1,6 +1,5 @@
 /* material_khr.c: the KHR_materials_ extensions that add layers and lobes to glTF's material. */
-#include <math.h>
-
+#include "core/angle.h"
 #include "scene/material_params.h"
 
 #define WORD(name) CDL_GLTF_LAYERED_##name
@@ -82,9 +81,8 @@ static void add_channel(cdl_SceneMaterial *material, const cdl_TextureRef *textu
 static cdl_Status read_anisotropy(Builder *builder, const char *at, const json_t *json,
                                   cdl_SceneMaterial *material) {
   cdl_TextureRef texture;
-  double angle = json_get_number(json, "anisotropyRotation", 0);
-  material->param[WORD(ANISOTROPY_ROTATION)] = (float)cos(angle);
-  material->param[WORD(ANISOTROPY_ROTATION) + 1] = (float)sin(angle);
+  float *rotation = &material->param[WORD(ANISOTROPY_ROTATION)];
+  angle_sincos(json_get_number(json, "anisotropyRotation", 0), &rotation[1], &rotation[0]);
   material->param[WORD(ANISOTROPY_DIRECTION)] = 1;
   cdl_Status status =
       build_texture_ref(builder, at, json_object_get(json, "anisotropyTexture"), &texture);

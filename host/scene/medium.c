@@ -2,6 +2,7 @@
 #include <math.h>
 #include <string.h>
 
+#include "lib/math.h"
 #include "scene/build.h"
 
 static cdl_Status add_medium(Builder *builder, const cdl_SceneMedium *medium, uint32_t *index) {
@@ -74,7 +75,8 @@ cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *sc
   medium.g = (float)json_get_number(scatter, "scatterAnisotropy", 0);
   if (medium.g != 0) medium.phase = CDL_PHASE_HG;
   for (int c = 0; c < 3; c++) {
-    double sigma = fmin(-log(fmax(colour[c], 1e-6)) / fmax(distance, 1e-30), 1e30);
+    double depth = -math_log(fmaxf(colour[c], 1e-6f));
+    double sigma = fmin(depth / fmax(distance, 1e-30), 1e30);
     medium.scattering[c] = single_albedo(many[c]) * (float)sigma;
     medium.absorption[c] = (float)sigma - medium.scattering[c];
     most = fmaxf(most, (float)sigma);

@@ -60,7 +60,10 @@ int motion_moves(const struct cdl_Scene *scene, uint32_t instance) {
 
 static double scene_size(const struct cdl_Scene *scene) {
   double sum = 0;
-  for (int c = 0; c < 3; c++) sum += pow((double)scene->bounds[1][c] - scene->bounds[0][c], 2);
+  for (int c = 0; c < 3; c++) {
+    double side = (double)scene->bounds[1][c] - scene->bounds[0][c];
+    sum += side * side;
+  }
   return isfinite(sum) && sum > 0 ? sqrt(sum) : 1;
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "lib/color.h"
+#include "light/environment.h"
 #include "scene/alias.h"
 #include "scene/pack_parts.h"
 
@@ -89,7 +90,7 @@ static cdl_Status build_cells(const cdl_Log *log, cdl_Pack *pack, double *integr
   if (!weights) return CDL_BAD_INPUT;
 #pragma omp parallel for schedule(dynamic)
   for (uint32_t row = 0; row < env->rows; row++) {
-    double band = cos(M_PI * row / env->rows) - cos(M_PI * (row + 1.0) / env->rows);
+    double band = environment_row_height(env, (int)row);
     for (uint32_t column = 0; column < env->columns; column++)
       weights[(size_t)row * env->columns + column] =
           cell_luminance(pack, column, row) * band * 2.0 * M_PI / env->columns;
@@ -113,9 +114,8 @@ static void set_params(const cdl_SceneEnvironment *from, const cdl_Image *image,
   env->columns = image ? cells_across(image->width, MAX_COLUMNS) : 1;
   env->rows = image ? cells_across(image->height, MAX_ROWS) : 1;
   for (int c = 0; c < 3; c++) env->scale[c] = from->strength;
-  double angle = from->rotation * M_PI / 180.0;
-  env->rotation_cos = (float)cos(angle);
-  env->rotation_sin = (float)sin(angle);
+  float turns = from->rotation / 360.0f;
+  math_sincos_2pi(turns - rintf(turns), &env->rotation_sin, &env->rotation_cos);
 }
 
 cdl_Status pack_environment(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack,

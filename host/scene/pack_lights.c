@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/angle.h"
 #include "core/log.h"
 #include "scene/alias.h"
 #include "scene/pack_parts.h"
@@ -104,15 +105,17 @@ static void pack_triangle_lights(cdl_Pack *pack, double *power) {
   }
 }
 
-/* The spot's formula in KHR_lights_punctual: cos scale + offset, clamped, squared. */
+/* The spot's formula in KHR_lights_punctual: cos scale + offset, clamped, squared. The difference
+ * of the cosines is 2 sin sin, as they cancel where cones are narrow or alike. */
 static void set_cone(const cdl_SceneLight *from, cdl_Light *to) {
   to->cone_scale = 0.0f;
   to->cone_offset = 1.0f;
   if (from->type != CDL_PUNCTUAL_SPOT) return;
-  double inner = cos(from->inner_cone), outer = cos(from->outer_cone);
-  double scale = 1.0 / fmax(0.001, inner - outer);
+  double inner = from->inner_cone, outer = from->outer_cone;
+  double difference = 2.0 * angle_sin((outer + inner) / 2) * angle_sin((outer - inner) / 2);
+  double scale = 1.0 / fmax(0.001, difference);
   to->cone_scale = (float)scale;
-  to->cone_offset = (float)(-outer * scale);
+  to->cone_offset = (float)((angle_versine(outer) - 1.0) * scale);
 }
 
 static double pack_punctual_light(const cdl_SceneLight *from, double radius, cdl_Light *to) {
@@ -126,7 +129,7 @@ static double pack_punctual_light(const cdl_SceneLight *from, double radius, cdl
   set_cone(from, to);
   double solid_angle = 4.0 * M_PI;
   if (from->type == CDL_PUNCTUAL_SPOT)
-    solid_angle = 2.0 * M_PI * (1.0 - 0.5 * (cos(from->inner_cone) + cos(from->outer_cone)));
+    solid_angle = M_PI * (angle_versine(from->inner_cone) + angle_versine(from->outer_cone));
   if (from->type == CDL_PUNCTUAL_DIRECTIONAL) solid_angle = M_PI * radius * radius;
   return solid_angle * luminance(from->intensity);
 }

@@ -7,6 +7,7 @@
 #include <math.h>
 #include <stdlib.h>
 
+#include "core/angle.h"
 #include "scene/build.h"
 
 typedef struct Vec {
@@ -48,11 +49,13 @@ static int triangle_tangent(const cdl_SceneMesh *mesh, const float *uv, const ui
   return dot(*tangent, *tangent) > 0;
 }
 
+/* A right angle where one side has no length. */
 static double corner_angle(const cdl_SceneMesh *mesh, const uint32_t *v, int k) {
   Vec p = vec_of(mesh->positions + 3 * v[k]);
   Vec a = unit(sub(vec_of(mesh->positions + 3 * v[(k + 1) % 3]), p));
   Vec b = unit(sub(vec_of(mesh->positions + 3 * v[(k + 2) % 3]), p));
-  return acos(fmax(-1, fmin(1, dot(a, b))));
+  Vec difference = sub(a, b), sum = along(a, 1, b);
+  return angle_between(sqrt(dot(difference, difference)), sqrt(dot(sum, sum)));
 }
 
 /* Sums for one vertex: tangents by angle, and angles by handedness. */

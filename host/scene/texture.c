@@ -1,10 +1,10 @@
 /* texture.c: glTF textures, samplers and images on their way into the scene. */
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
 
+#include "core/angle.h"
 #include "core/log.h"
 #include "scene/build.h"
 
@@ -113,9 +113,9 @@ static void read_transform(const json_t *json, cdl_TextureRef *ref) {
   float offset[2] = {0, 0}, scale[2] = {1, 1};
   json_get_numbers(json, "offset", 2, offset);
   json_get_numbers(json, "scale", 2, scale);
-  double angle = json_get_number(json, "rotation", 0), c = cos(angle), s = sin(angle);
-  float m[6] = {(float)(c * scale[0]),  (float)(s * scale[1]), offset[0],
-                (float)(-s * scale[0]), (float)(c * scale[1]), offset[1]};
+  float c, s;
+  angle_sincos(json_get_number(json, "rotation", 0), &s, &c);
+  float m[6] = {c * scale[0], s * scale[1], offset[0], -s * scale[0], c * scale[1], offset[1]};
   memcpy(ref->transform, m, sizeof m);
 }
 

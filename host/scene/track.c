@@ -4,6 +4,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "core/angle.h"
 #include "scene/accessor.h"
 
 /* The key at or before `time`, which lies within the track. */
@@ -32,19 +33,24 @@ static void to_unit(double q[4]) {
   for (int i = 0; i < 4; i++) q[i] = n > 0 ? q[i] / n : i == 3;
 }
 
-/* The shorter arc; where it is tiny, sines would divide 0 by 0. Keys of few bits are not unit. */
+/* The shorter arc. Keys of few bits are not unit. */
 static void slerp(const float *from, const float *to, double t, double *out) {
   double a[4] = {from[0], from[1], from[2], from[3]}, b[4] = {to[0], to[1], to[2], to[3]};
-  double d = 0, wa = 1 - t, wb = t;
+  double d = 0, difference = 0, sum = 0, wa = 1 - t, wb = t;
   to_unit(a);
   to_unit(b);
   for (int i = 0; i < 4; i++) d += a[i] * b[i];
-  double sign = d < 0 ? -1 : 1, angle = acos(fmin(1, fabs(d)));
-  if (angle > 1e-6) {
-    wa = sin((1 - t) * angle) / sin(angle);
-    wb = sin(t * angle) / sin(angle);
+  for (int i = 0; i < 4; i++) {
+    if (d < 0) b[i] = -b[i];
+    difference += (a[i] - b[i]) * (a[i] - b[i]);
+    sum += (a[i] + b[i]) * (a[i] + b[i]);
   }
-  for (int i = 0; i < 4; i++) out[i] = wa * a[i] + sign * wb * b[i];
+  double angle = angle_between(sqrt(difference), sqrt(sum));
+  if (angle > 0) {
+    wa = angle_sin((1 - t) * angle) / angle_sin(angle);
+    wb = angle_sin(t * angle) / angle_sin(angle);
+  }
+  for (int i = 0; i < 4; i++) out[i] = wa * a[i] + wb * b[i];
 }
 
 static void hermite(const Track *track, size_t key, double t, double span, double *out) {

@@ -23,6 +23,10 @@
 
 #else
 
+#if defined(__FAST_MATH__) || (defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0)
+#error "the host's arithmetic must be exact: no -ffast-math, and for 32-bit x86 -mfpmath=sse -msse2"
+#endif
+
 #include <tgmath.h>
 #include <stdint.h>
 #include <string.h>
