@@ -26,9 +26,6 @@ cdl_Status meshopt_view(Document *doc, uint32_t i, const json_t *json, BufferVie
 int meshopt_attributes(const uint8_t *stream, size_t size, size_t count, size_t stride,
                        uint8_t *out);
 
-/* The filter COLOR: `count` elements of `stride` bytes (4 or 8), in place (appendix B). */
-void meshopt_colors(uint8_t *data, size_t count, size_t stride);
-
 /* KHR_draco_mesh_compression: decompresses the accessors of all primitives that say so. Their mode
  * becomes TRIANGLES in doc->root, as that is what the decoder makes of strips. */
 cdl_Status draco_primitives(Document *doc);

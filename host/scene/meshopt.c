@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "scene/compression.h"
+#include "scene/meshopt_filter.h"
 
 #define HEADER_ATTRIBUTES_0 0xa0
 #define HEADER_ATTRIBUTES_1 0xa1
@@ -116,13 +117,13 @@ static int decode_stream(const Stream *s, uint8_t *out) {
 static void apply_filter(const Stream *s, uint8_t *data) {
   switch (s->filter) {
   case FILTER_OCTAHEDRAL:
-    meshopt_decodeFilterOct(data, s->count, s->stride);
+    meshopt_octahedral(data, s->count, s->stride);
     break;
   case FILTER_QUATERNION:
-    meshopt_decodeFilterQuat(data, s->count, s->stride);
+    meshopt_quaternions(data, s->count);
     break;
   case FILTER_EXPONENTIAL:
-    meshopt_decodeFilterExp(data, s->count, s->stride);
+    meshopt_exponential(data, s->count, s->stride);
     break;
   case FILTER_COLOR:
     meshopt_colors(data, s->count, s->stride);

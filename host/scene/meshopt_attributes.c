@@ -1,10 +1,9 @@
-/* meshopt_attributes.c: attribute streams of KHR_meshopt_compression, appendix A, mode 0, and its
- * filter COLOR: the library that Debian 12 has knows neither the streams' version 1 nor the filter.
+/* meshopt_attributes.c: attribute streams of KHR_meshopt_compression, appendix A, mode 0: the
+ * library that Debian 12 has does not know the streams' version 1.
  *
  * A stream: header, blocks, padding, tail. A block holds up to 256 elements byte by byte: for each
  * byte of an element the differences from one element to the next, in groups of 16. The tail holds
  * the element before the first, and (version 1) how each four bytes were made into differences. */
-#include <math.h>
 #include <string.h>
 
 #include "scene/compression.h"
@@ -139,35 +138,4 @@ int meshopt_attributes(const uint8_t *stream, size_t size, size_t count, size_t 
     done += here;
   }
   return reader.at == reader.end;
-}
-
-/* YCoCg in as many bits as the highest one set in the fourth component says. */
-static void color_decode(int32_t y, int32_t co, int32_t cg, uint32_t alpha, float most,
-                         float out[4]) {
-  uint32_t scale = 1;
-  while (scale < alpha) scale = scale << 1 | 1;
-  uint32_t a = alpha & scale >> 1;
-  float to = most / (float)scale;
-  out[0] = (float)(y + co - cg) * to;
-  out[1] = (float)(y + cg) * to;
-  out[2] = (float)(y - co - cg) * to;
-  out[3] = (float)(a << 1 | (a & 1)) * to;
-  for (int c = 0; c < 4; c++) out[c] = floorf(fminf(fmaxf(out[c], 0), most) + 0.5f);
-}
-
-void meshopt_colors(uint8_t *data, size_t count, size_t stride) {
-  float rgba[4];
-  for (size_t i = 0; i < count; i++) {
-    uint8_t *p = data + i * stride;
-    uint16_t v[4];
-    if (stride == 4) {
-      color_decode(p[0], (int8_t)p[1], (int8_t)p[2], p[3], 255, rgba);
-      for (int c = 0; c < 4; c++) p[c] = (uint8_t)rgba[c];
-      continue;
-    }
-    memcpy(v, p, 8);
-    color_decode(v[0], (int16_t)v[1], (int16_t)v[2], v[3], 65535, rgba);
-    for (int c = 0; c < 4; c++) v[c] = (uint16_t)rgba[c];
-    memcpy(p, v, 8);
-  }
 }

@@ -1,7 +1,6 @@
 /* test_meshopt_attributes.c: our decoder of attribute streams: version 1 against what another
- * encoder wrote, version 0 against that of the library; and the colour filter. */
+ * encoder wrote, version 0 against that of the library. */
 #include <meshoptimizer.h>
-#include <math.h>
 #include <setjmp.h>
 #include <stdarg.h>
 #include <stddef.h>
@@ -63,33 +62,8 @@ static void test_version_0(void **state) {
   }
 }
 
-/* Colours of 5 to 8 and 16 bits whose chroma is whole: those come back to the rounding of their
- * bits to 8 or 16. */
-static void test_colors(void **state) {
-  (void)state;
-  for (int bits = 5; bits <= 16; bits++) {
-    int most = (1 << bits) - 1, step = most / 31;
-    size_t stride = bits <= 8 ? 4 : 8;
-    for (int r = 0; r < 31 * step; r += 4 * step)
-      for (int b = r % (2 * step); b < 31 * step; b += 2 * step) {
-        int co = (r - b) / 2, y = b + co, g = y, a = most / 3;
-        int stored[4] = {y, co, 0, 1 << (bits - 1) | a >> 1}, alpha = a >> 1 << 1 | (a >> 1 & 1);
-        int wanted[4] = {2 * co + b, g, b, alpha};
-        uint8_t bytes[4];
-        uint16_t shorts[4];
-        for (int c = 0; c < 4; c++) bytes[c] = (uint8_t)stored[c], shorts[c] = (uint16_t)stored[c];
-        meshopt_colors(stride == 4 ? bytes : (uint8_t *)shorts, 1, stride);
-        for (int c = 0; c < 4; c++) {
-          double value = stride == 4 ? bytes[c] / 255.0 : shorts[c] / 65535.0;
-          assert_true(fabs(value - wanted[c] / (double)most) <= (stride == 4 ? 0.51 / 255 : 1e-5));
-        }
-      }
-  }
-}
-
 int main(void) {
   const struct CMUnitTest tests[] = {cmocka_unit_test(test_version_1),
-                                     cmocka_unit_test(test_version_0),
-                                     cmocka_unit_test(test_colors)};
+                                     cmocka_unit_test(test_version_0)};
   return cmocka_run_group_tests(tests, NULL, NULL);
 }
