@@ -14,8 +14,18 @@
 #define CDL_GLOBAL __global
 #define CDL_CONSTANT __constant
 
-/* 0; PoCL cannot know that before it knows the work-group's size; see math_after. */
+/* A long function, kept a call by PoCL, which compiles a kernel three times: by itself, and inlined
+ * into each of the two functions that start a work-group. It inlines whatever asks for the size or
+ * the place of the work-group, so such a function must not. */
 #ifdef POCL_DEVICE_ADDRESS_BITS
+#define CDL_FUNCTION static __attribute__((noinline))
+#else
+#define CDL_FUNCTION CDL_INLINE
+#endif
+
+/* 0; PoCL cannot know that before it knows the work-group's size; see math_after. Strips do without
+ * (lib/stage.h). */
+#if defined(POCL_DEVICE_ADDRESS_BITS) && CDL_STRIP == 1
 #define CDL_HIDDEN_ZERO ((uint)(get_local_size(2) >> 31))
 #else
 #define CDL_HIDDEN_ZERO 0u
@@ -32,6 +42,7 @@
 #include <string.h>
 
 #define CDL_INLINE static inline __attribute__((always_inline, unused))
+#define CDL_FUNCTION static __attribute__((unused))
 #define CDL_GLOBAL
 #define CDL_CONSTANT const
 #define CDL_HIDDEN_ZERO 0u

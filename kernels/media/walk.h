@@ -8,14 +8,14 @@
 
 /* Follows `direction` from `origin` to `reach` (in units of direction) and keeps account of every
  * boundary of a medium on the way, at most `limit` surfaces. */
-CDL_INLINE MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, float reach,
-                                 uint limit, CDL_GLOBAL const BvhNode *nodes,
-                                 CDL_GLOBAL const BvhTriangle *bvh_triangles,
-                                 CDL_GLOBAL const cdl_BvhInstance *instances, uint root,
-                                 CDL_GLOBAL const cdl_Triangle *triangles,
-                                 CDL_GLOBAL const cdl_Shape *shapes,
-                                 CDL_GLOBAL const float *attributes,
-                                 CDL_GLOBAL const cdl_Material *materials CDL_TIME_PARAM) {
+CDL_FUNCTION MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction, float reach,
+                                   uint limit, CDL_GLOBAL const BvhNode *nodes,
+                                   CDL_GLOBAL const BvhTriangle *bvh_triangles,
+                                   CDL_GLOBAL const cdl_BvhInstance *instances, uint root,
+                                   CDL_GLOBAL const cdl_Triangle *triangles,
+                                   CDL_GLOBAL const cdl_Shape *shapes,
+                                   CDL_GLOBAL const float *attributes,
+                                   CDL_GLOBAL const cdl_Material *materials CDL_TIME_PARAM) {
   Hit last = hit_none(0.0f);
   for (uint crossed = 0; crossed < limit; crossed++) {
     Hit hit = bvh_closest_after(nodes, bvh_triangles, instances, root, origin, direction, reach,

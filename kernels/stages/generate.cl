@@ -6,12 +6,13 @@
 #include "lib/dimensions.h"
 #include "lib/state.h"
 
-__kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
-                       CDL_CONSTANT cdl_Wave *restrict wave,
-                       CDL_GLOBAL const float *restrict attributes,
-                       CDL_GLOBAL const uint *restrict camera_media, CDL_GLOBAL uint *path,
-                       CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
-  CDL_FOR_EACH_ITEM(i) {
+CDL_FUNCTION void generate_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
+                                 CDL_CONSTANT cdl_Wave *restrict wave,
+                                 CDL_GLOBAL const float *restrict attributes,
+                                 CDL_GLOBAL const uint *restrict camera_media,
+                                 CDL_GLOBAL uint *path, CDL_GLOBAL uint *work,
+                                 CDL_GLOBAL uint *slots) {
+  CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     int used = i < wave->path_count;
     PathRandom random = path_random(params, wave, (uint)i);
@@ -39,4 +40,13 @@ __kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
     state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, 0u);
     state_set_vec3(slots, CDL_SLOT_RADIANCE, wave->slots, i, v3_all(0.0f));
   }
+}
+
+__kernel void generate(CDL_CONSTANT cdl_Params *restrict params,
+                       CDL_CONSTANT cdl_Wave *restrict wave,
+                       CDL_GLOBAL const float *restrict attributes,
+                       CDL_GLOBAL const uint *restrict camera_media, CDL_GLOBAL uint *path,
+                       CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
+  generate_strip(get_global_id(0) * CDL_STRIP, params, wave, attributes, camera_media, path, work,
+                 slots);
 }

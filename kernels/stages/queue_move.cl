@@ -5,10 +5,10 @@
 #include "abi/params.h"
 #include "lib/state.h"
 
-__kernel void queue_move(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const uint *sources,
-                         CDL_GLOBAL const uint *path_from, CDL_GLOBAL uint *path,
-                         CDL_GLOBAL uint *work) {
-  CDL_FOR_EACH_ITEM(i) {
+CDL_FUNCTION void queue_move_strip(size_t first, CDL_CONSTANT cdl_Wave *restrict wave,
+                                   CDL_GLOBAL const uint *sources, CDL_GLOBAL const uint *path_from,
+                                   CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
+  CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     uint source = sources[i];
     int pad = (source & CDL_SOURCE_PAD) != 0u;
@@ -28,4 +28,10 @@ __kernel void queue_move(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const 
     state_set_uint(work, CDL_WORK_QUEUE, stride, i, CDL_QUEUE_DEAD);
     state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, 0u);
   }
+}
+
+__kernel void queue_move(CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const uint *sources,
+                         CDL_GLOBAL const uint *path_from, CDL_GLOBAL uint *path,
+                         CDL_GLOBAL uint *work) {
+  queue_move_strip(get_global_id(0) * CDL_STRIP, wave, sources, path_from, path, work);
 }

@@ -7,11 +7,11 @@
 #include "media/homogeneous.h"
 #include "media/stack.h"
 
-__kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
-                            CDL_CONSTANT cdl_Wave *restrict wave,
-                            CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
-                            CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
-  CDL_FOR_EACH_ITEM(i) {
+CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
+                                      CDL_CONSTANT cdl_Wave *restrict wave,
+                                      CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
+                                      CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
+  CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
     int alive = queue != CDL_QUEUE_DEAD;
@@ -47,4 +47,11 @@ __kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
     uint next_queue = counts_depth(counts) < params->max_depth ? CDL_QUEUE_MEDIUM : CDL_QUEUE_ENDED;
     state_set_uint(work, CDL_WORK_QUEUE, stride, i, scattered ? next_queue : queue);
   }
+}
+
+__kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
+                            CDL_CONSTANT cdl_Wave *restrict wave,
+                            CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
+                            CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
+  sample_medium_strip(get_global_id(0) * CDL_STRIP, params, wave, media, path, work, slots);
 }

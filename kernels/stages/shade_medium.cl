@@ -8,10 +8,11 @@
 #include "media/phase.h"
 #include "media/stack.h"
 
-__kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
-                           CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_Medium *media,
-                           CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
-  CDL_FOR_EACH_ITEM(i) {
+CDL_FUNCTION void shade_medium_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
+                                     CDL_CONSTANT cdl_Wave *restrict wave,
+                                     CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
+                                     CDL_GLOBAL uint *work) {
+  CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
@@ -53,4 +54,10 @@ __kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
     state_set_uint(work, CDL_WORK_QUEUE, stride, i,
                    v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
   }
+}
+
+__kernel void shade_medium(CDL_CONSTANT cdl_Params *restrict params,
+                           CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL const cdl_Medium *media,
+                           CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
+  shade_medium_strip(get_global_id(0) * CDL_STRIP, params, wave, media, path, work);
 }

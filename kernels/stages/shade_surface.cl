@@ -153,16 +153,18 @@ CDL_INLINE vec3 fold(Vertex at, vec3 wi) {
 
 #ifdef CDL_SHADE_ENERGY
 #define SHADE_ENERGY_PARAMETER , CDL_GLOBAL const float *energy_table
+#define SHADE_ENERGY_ARGUMENT , energy_table
 #define SHADE_ENERGY energy_table
 #else
 #define SHADE_ENERGY_PARAMETER
+#define SHADE_ENERGY_ARGUMENT
 #define SHADE_ENERGY 0
 #endif
 
-__kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
+CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
                               CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL uint *path,
                               CDL_GLOBAL uint *work SHADE_ENERGY_PARAMETER) {
-  CDL_FOR_EACH_ITEM(i) {
+  CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     Vertex at = load_vertex(params, wave, path, work, i);
     BsdfPoint point = load_point(at, path, work, stride, i);
@@ -206,4 +208,10 @@ __kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
     state_set_uint(work, CDL_WORK_QUEUE, stride, i,
                    v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
   }
+}
+
+__kernel void CDL_KERNEL_NAME(CDL_CONSTANT cdl_Params *restrict params,
+                              CDL_CONSTANT cdl_Wave *restrict wave, CDL_GLOBAL uint *path,
+                              CDL_GLOBAL uint *work SHADE_ENERGY_PARAMETER) {
+  shade_strip(get_global_id(0) * CDL_STRIP, params, wave, path, work SHADE_ENERGY_ARGUMENT);
 }
