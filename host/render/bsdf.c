@@ -7,6 +7,7 @@
 #include "core/log.h"
 #include "device/queue.h"
 #include "render/bsdf.h"
+#include "scene/choice.h"
 #include "scene/pack_parts.h"
 
 enum { CHUNK = 1 << 17, WAVELENGTHS = 16 };
@@ -41,17 +42,11 @@ static cdl_Status not_found(const cdl_Log *log, const cdl_Scene *scene, const ch
                   scene->path, material, *all ? all : "it has none at all");
 }
 
-/* A name comes before an index: materials may be called "2". */
 static cdl_Status find(const cdl_Log *log, const cdl_Scene *scene, const char *material,
                        uint32_t *index) {
-  for (*index = 0; *index < scene->material_count; ++*index)
-    if (!strcmp(scene->materials[*index].name, material)) return CDL_OK;
-  char *end;
-  unsigned long number = strtoul(material, &end, 10);
-  if (*material < '0' || *material > '9' || *end || number >= scene->material_count)
-    return not_found(log, scene, material);
-  *index = (uint32_t)number;
-  return CDL_OK;
+  Choice materials = choice_of_materials(scene);
+  *index = choice_find(&materials, material);
+  return *index == CDL_NONE ? not_found(log, scene, material) : CDL_OK;
 }
 
 static cdl_Status check(const cdl_Log *log, const cdl_Scene *scene, uint32_t index) {

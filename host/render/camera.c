@@ -1,39 +1,18 @@
 #include "render/camera.h"
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "core/angle.h"
-#include "core/log.h"
-
-static cdl_Status fail_unknown(const cdl_Log *log, const cdl_Scene *scene, const char *name) {
-  char names[1024] = "";
-  for (uint32_t i = 0; i < scene->camera_count; i++) {
-    size_t used = strlen(names);
-    snprintf(names + used, sizeof names - used, "%s%u \"%s\"", i ? ", " : "", i,
-             scene->cameras[i].name ? scene->cameras[i].name : "");
-  }
-  return log_fail(log, CDL_USAGE, "--camera %s: %s has no such camera; it has %s", name,
-                  scene->path, names);
-}
+#include "scene/choice.h"
 
 cdl_Status camera_find(const cdl_Log *log, const cdl_Scene *scene, const char *name,
                        const cdl_SceneCamera **camera) {
-  *camera = &scene->cameras[0];
-  if (!name) return CDL_OK;
-  for (uint32_t i = 0; i < scene->camera_count; i++)
-    if (scene->cameras[i].name && !strcmp(scene->cameras[i].name, name)) {
-      *camera = &scene->cameras[i];
-      return CDL_OK;
-    }
-  char *end;
-  unsigned long index = strtoul(name, &end, 10);
-  if (name[0] < '0' || name[0] > '9' || *end || index >= scene->camera_count)
-    return fail_unknown(log, scene, name);
-  *camera = &scene->cameras[index];
-  return CDL_OK;
+  Choice cameras = choice_of_cameras(scene);
+  uint32_t index = 0;
+  cdl_Status status = name ? choice_require(log, &cameras, name, &index) : CDL_OK;
+  if (!status) *camera = &scene->cameras[index];
+  return status;
 }
 
 static double camera_aspect(const cdl_SceneCamera *camera) {

@@ -6,8 +6,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "core/log.h"
 #include "scene/check.h"
+#include "scene/choice.h"
 #include "scene/schema.h"
 #include "scene/track.h"
 
@@ -193,28 +193,12 @@ static cdl_Status apply_all(Document *doc, double time) {
   return status;
 }
 
-static cdl_Status fail_unknown(const Document *doc, const char *name) {
-  const json_t *list = json_object_get(doc->root, "animations");
-  char names[1024] = "";
-  for (size_t i = 0; i < json_array_size(list); i++) {
-    size_t used = strlen(names);
-    snprintf(names + used, sizeof names - used, "%s%zu \"%s\"", i ? ", " : "", i,
-             json_get_string(json_array_get(list, i), "name", ""));
-  }
-  return log_fail(doc->log, CDL_USAGE, "--animation %s: %s has %s%s", name, doc->path,
-                  *names ? "no such animation; it has " : "no animations", names);
-}
-
 static cdl_Status apply_named(Document *doc, double time, const char *name) {
   const json_t *list = json_object_get(doc->root, "animations");
-  for (size_t i = 0; i < json_array_size(list); i++)
-    if (strcmp(json_get_string(json_array_get(list, i), "name", ""), name) == 0)
-      return apply_animation(doc, time, i);
-  char *end;
-  unsigned long index = strtoul(name, &end, 10);
-  if (*name < '0' || *name > '9' || *end || index >= json_array_size(list))
-    return fail_unknown(doc, name);
-  return apply_animation(doc, time, index);
+  Choice animations = choice_of_objects("animation", doc->path, list);
+  uint32_t index;
+  cdl_Status status = choice_require(doc->log, &animations, name, &index);
+  return status ? status : apply_animation(doc, time, index);
 }
 
 /* What pointers reach is checked once more: members may contradict each other only together. */

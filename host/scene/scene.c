@@ -10,6 +10,7 @@
 #include "core/text.h"
 #include "scene/build.h"
 #include "scene/check.h"
+#include "scene/choice.h"
 #include "scene/motion.h"
 #include "scene/pose.h"
 
@@ -161,12 +162,10 @@ static int any_open_shutter(const Document *doc) {
   return 0;
 }
 
+/* The first without a name. NULL where there is none: camera_find() says so. */
 static const cdl_SceneCamera *find_camera(const struct cdl_Scene *scene, const char *name) {
-  if (!scene->camera_count) return NULL;
-  for (uint32_t i = 0; name && i < scene->camera_count; i++)
-    if (strcmp(scene->cameras[i].name, name) == 0) return &scene->cameras[i];
-  char *end;
-  unsigned long index = name ? strtoul(name, &end, 10) : 0;
+  Choice cameras = choice_of_cameras(scene);
+  uint32_t index = name ? choice_find(&cameras, name) : 0;
   return index < scene->camera_count ? &scene->cameras[index] : NULL;
 }
 

@@ -1,37 +1,18 @@
 /* variant.c: KHR_materials_variants: which material a primitive has. */
-#include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
-#include "core/log.h"
 #include "scene/build.h"
+#include "scene/choice.h"
 
 static const json_t *variants_of(const Document *doc) {
   return json_object_get(json_get_extension(doc->root, "KHR_materials_variants"), "variants");
 }
 
-static cdl_Status fail_unknown(const Document *doc, const char *name) {
-  const json_t *list = variants_of(doc);
-  char names[1024] = "";
-  for (size_t i = 0; i < json_array_size(list); i++) {
-    size_t used = strlen(names);
-    snprintf(names + used, sizeof names - used, "%s\"%s\"", i ? ", " : "",
-             json_get_string(json_array_get(list, i), "name", ""));
-  }
-  return log_fail(doc->log, CDL_USAGE, "--variant %s: %s has %s%s", name, doc->path,
-                  *names ? "no such variant; it has " : "no variants", names);
-}
-
 cdl_Status variant_find(const Document *doc, const char *name, uint32_t *index) {
-  const json_t *list = variants_of(doc);
+  Choice variants = choice_of_objects("variant", doc->path, variants_of(doc));
+  variants.by_name = 1;
   *index = CDL_NONE;
-  if (!name) return CDL_OK;
-  for (size_t i = 0; i < json_array_size(list); i++)
-    if (strcmp(json_get_string(json_array_get(list, i), "name", ""), name) == 0) {
-      *index = (uint32_t)i;
-      return CDL_OK;
-    }
-  return fail_unknown(doc, name);
+  return name ? choice_require(doc->log, &variants, name, index) : CDL_OK;
 }
 
 uint32_t variant_material(const json_t *primitive, uint32_t variant, uint32_t otherwise) {
