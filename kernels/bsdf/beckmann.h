@@ -28,7 +28,7 @@ CDL_INLINE float beckmann_lambda(float a) {
   float t = 1.0f / fma(0.3275911f, a, 1.0f);
   float p = fma(fma(1.061405429f, t, -1.453152027f), t, 1.421413741f);
   p = fma(fma(p, t, -0.284496736f), t, 0.254829592f) * t;
-  return math_max(0.5f * math_exp(-a * a) * (BECKMANN_INV_SQRT_PI / math_after(p, a) - p), 0.0f);
+  return math_max(0.5f * math_exp(-a * a) * (BECKMANN_INV_SQRT_PI / a - p), 0.0f);
 }
 
 /* Inverse of the error function, |x| < 1; relative error 4e-7 (Giles, "Approximating the erfinv
@@ -40,7 +40,7 @@ CDL_INLINE float beckmann_erf_inverse(float x) {
   p = fma(fma(p, c, -4.39150654e-6f), c, 0.00021858087f);
   p = fma(fma(p, c, -0.00125372503f), c, -0.00417768164f);
   p = fma(fma(p, c, 0.246640727f), c, 1.50140941f);
-  float t = math_after(p, math_safe_sqrt(w)) - 3.0f;
+  float t = math_safe_sqrt(w) - 3.0f;
   float q = fma(fma(-0.000200214257f, t, 0.000100950558f), t, 0.00134934322f);
   q = fma(fma(q, t, -0.00367342844f), t, 0.00573950773f);
   q = fma(fma(q, t, -0.0076224613f), t, 0.00943887047f);

@@ -24,7 +24,6 @@ typedef struct ConductorParams {
  * below 0.007. */
 CDL_INLINE vec3 conductor_mean_fresnel(vec3 eta, vec3 k) {
   vec3 grazing = fresnel_conductor(0.355051026f, eta, k);
-  eta.x = math_after(grazing.z, eta.x);
   vec3 steep = fresnel_conductor(0.844948974f, eta, k);
   return v3_madd(v3_scale(grazing, 0.363917240f), 0.636082760f, steep);
 }
@@ -47,16 +46,13 @@ CDL_INLINE ConductorParams conductor_make(BsdfPoint point, float alpha_x, float 
   int compensated = (point.flags & CDL_MATERIAL_ENERGY_COMPENSATED) != 0u && !p.facets.smooth;
   p.energy = energy_table(point.energy, p.facets);
   float missing = energy_metal_missing_mean(p.energy, p.facets);
-  eta.x = math_after(missing, eta.x);
   vec3 fresnel = conductor_mean_fresnel(eta, k);
   float inverse = 1.0f / missing;
   float r = conductor_diffuse_color(fresnel.x, missing);
-  float g = conductor_diffuse_color(math_after(r, fresnel.y), missing);
-  float b = conductor_diffuse_color(math_after(g, fresnel.z), missing);
+  float g = conductor_diffuse_color(fresnel.y, missing);
+  float b = conductor_diffuse_color(fresnel.z, missing);
   p.diffuse = v3_scale(v3(r, g, b), inverse);
   p.compensated = compensated ? 1.0f : 0.0f;
-  p.facets.alpha_x = math_after(p.diffuse.z, p.facets.alpha_x);
-  p.eta.x = math_after(p.diffuse.z, p.eta.x);
 #endif
   return p;
 }
@@ -85,7 +81,6 @@ CDL_INLINE BsdfValue conductor_value(ConductorParams p, vec3 wo, vec3 wi, float 
   vec3 f_cos = v3_scale(fresnel, lobe.f_cos);
   float pdf = lobe.bounded_pdf;
 #if CDL_ENERGY_COMPENSATION
-  p.facets.alpha_x = math_after(pdf, p.facets.alpha_x);
   float cosine_pdf = wo.z > 0.0f ? CDL_INV_PI * math_max(wi.z, 0.0f) : 0.0f;
   float missing = energy_metal_missing(p.energy, p.facets, wi);
   f_cos = v3_madd(f_cos, share * missing * cosine_pdf, p.diffuse);
@@ -105,14 +100,14 @@ CDL_INLINE BsdfValue conductor_evaluate(ConductorParams p, vec3 wo, vec3 wi) {
 CDL_INLINE BsdfSample conductor_sample(ConductorParams p, vec3 wo, float u, float v, float w) {
   (void)w;
   float share = conductor_diffuse_share(p, wo);
-  vec3 wi = microfacet_sample_reflection(p.facets, wo, math_after(share, u), v);
+  vec3 wi = microfacet_sample_reflection(p.facets, wo, u, v);
 #if CDL_ENERGY_COMPENSATION
-  wi = v3_select(w < share, sample_cosine_hemisphere(math_after(wi.x, u), v), wi);
+  wi = v3_select(w < share, sample_cosine_hemisphere(u, v), wi);
 #endif
   int smooth = p.facets.smooth;
-  BsdfValue value = conductor_value(p, wo, wi, math_after(wi.z, share));
+  BsdfValue value = conductor_value(p, wo, wi, share);
   vec3 rough = v3_scale(value.f_cos, bsdf_reciprocal(value.pdf));
-  float cos_o = math_saturate(math_after(rough.x, wo.z));
+  float cos_o = math_saturate(wo.z);
   vec3 mirror = fresnel_conductor(cos_o, p.eta, p.k);
   BsdfSample sample = bsdf_sample(v3_select(smooth, bsdf_mirror(wo), wi),
                                   v3_select(smooth, mirror, rough), smooth ? 0.0f : value.pdf);

@@ -102,7 +102,7 @@ CDL_INLINE DisneyParams disney_params(BsdfPoint point, CDL_GLOBAL const uint *pa
   p.specular = v3_scale(disney_tint(p.base, specular_tint), specular);
   float sheen = p.opaque * param_float(params, CDL_DISNEY_SHEEN, stride, i);
   float sheen_tint = param_float(params, CDL_DISNEY_SHEEN_TINT, stride, i);
-  p.sheen = v3_scale(disney_tint(p.base, math_after(p.specular.x, sheen_tint)), sheen);
+  p.sheen = v3_scale(disney_tint(p.base, sheen_tint), sheen);
   p.thin = param_float(params, CDL_DISNEY_THIN, stride, i) >= 0.5f;
   float subsurface = param_float(params, CDL_DISNEY_SUBSURFACE, stride, i);
   float flatness = param_float(params, CDL_DISNEY_FLATNESS, stride, i);
@@ -123,9 +123,9 @@ CDL_INLINE DisneyParams disney_params(BsdfPoint point, CDL_GLOBAL const uint *pa
   float alpha = p.roughness * p.roughness;
   float through_alpha = alpha * (scale * scale);
   p.alpha_x = disney_alpha(alpha, inverse);
-  p.alpha_y = disney_alpha(math_after(p.alpha_x, alpha), aspect);
-  p.through_x = disney_alpha(math_after(p.alpha_y, through_alpha), inverse);
-  p.through_y = disney_alpha(math_after(p.through_x, through_alpha), aspect);
+  p.alpha_y = disney_alpha(alpha, aspect);
+  p.through_x = disney_alpha(through_alpha, inverse);
+  p.through_y = disney_alpha(through_alpha, aspect);
   return p;
 }
 
@@ -174,7 +174,7 @@ CDL_INLINE DisneyPair disney_pair(DisneyParams p, vec3 wo, vec3 wi) {
   q.cos_o = math_max(wo.z, 1e-9f);
   q.cos_i = math_max(math_abs(wi.z), 1e-9f);
   float cos_oh = v3_dot(wo, q.h);
-  float cos_ih = math_after(cos_oh, v3_dot(wi, q.h));
+  float cos_ih = v3_dot(wi, q.h);
   float half_length = 0.5f * length; /* wo.h and wi.h of a reflection, whatever rounds */
   q.cos_h = math_clamp(bends ? cos_oh : half_length, 1e-9f, 1.0f);
   float cos_ih_bent = math_max(-cos_ih, 0.0f);
@@ -183,9 +183,7 @@ CDL_INLINE DisneyPair disney_pair(DisneyParams p, vec3 wo, vec3 wi) {
   q.facets = (bends && (cos_oh <= 0.0f || cos_ih >= 0.0f)) ? 0.0f : 1.0f;
   Microfacets m = disney_facets(p, through);
   q.d = microfacet_density(m, q.h);
-  m.alpha_x = math_after(q.d, m.alpha_x);
   q.g1 = 1.0f / (1.0f + microfacet_lambda(m, wo));
-  m.alpha_x = math_after(q.g1, m.alpha_x);
   q.g2 = 1.0f / (1.0f + microfacet_lambda(m, mirrored));
   q.fresnel = fresnel_dielectric(q.cos_h, p.eta).reflectance;
   q.passed = bends ? disney_passed(q.cos_h, cos_ih_bent, p.eta) : 1.0f - q.fresnel;
@@ -196,13 +194,13 @@ CDL_INLINE DisneyPair disney_pair(DisneyParams p, vec3 wo, vec3 wi) {
 /* Burley's diffuse factor and Hanrahan and Krueger's, mixed, times pi over the base colour. */
 CDL_INLINE float disney_diffuse(DisneyParams p, DisneyPair q) {
   float weight_o = fresnel_schlick_weight(q.cos_o);
-  float weight_i = fresnel_schlick_weight(math_after(weight_o, q.cos_i));
+  float weight_i = fresnel_schlick_weight(q.cos_i);
   float retro = q.cos_h * q.cos_h * p.roughness;
   float at_90 = fma(2.0f, retro, -0.5f);
   float burley_o = fma(at_90, weight_o, 1.0f);
-  float burley = burley_o * fma(at_90, math_after(burley_o, weight_i), 1.0f);
-  float flat_o = fma(retro - 1.0f, math_after(burley, weight_o), 1.0f);
-  float flat = flat_o * fma(retro - 1.0f, math_after(flat_o, weight_i), 1.0f);
+  float burley = burley_o * fma(at_90, weight_i, 1.0f);
+  float flat_o = fma(retro - 1.0f, weight_o, 1.0f);
+  float flat = flat_o * fma(retro - 1.0f, weight_i, 1.0f);
   float subsurface = 1.25f * fma(flat, 1.0f / (q.cos_o + q.cos_i) - 0.5f, 0.5f);
   return math_lerp(burley, subsurface, p.flat);
 }
@@ -223,7 +221,7 @@ CDL_INLINE vec3 disney_reflection(DisneyParams p, DisneyPair q) {
                      disney_fresnel(p, p.base.y, p.specular.y, weight, q.fresnel),
                      disney_fresnel(p, p.base.z, p.specular.z, weight, q.fresnel));
   float masking = disney_coat_masking(q.cos_o);
-  masking = masking * disney_coat_masking(math_after(masking, q.cos_i));
+  masking = masking * disney_coat_masking(q.cos_i);
   float coat = p.coat * q.coat_d * masking * fma(0.96f, weight, 0.04f) * q.cos_i;
   float share = p.opaque * (1.0f - p.diffuse_through) * CDL_INV_PI * q.cos_i;
   vec3 f = v3_madd(v3_all(coat), facets, specular);

@@ -67,11 +67,11 @@ typedef struct EnergyView {
 CDL_INLINE EnergyView energy_view(Microfacets m, vec3 w) {
   EnergyView view;
   float x = math_abs(m.alpha_x * w.x);
-  float y = math_abs(math_after(x, m.alpha_y) * w.y);
+  float y = math_abs(m.alpha_y * w.y);
   float stretched = sqrt(fma(x, x, y * y));
   float sine = sqrt(fma(w.x, w.x, w.y * w.y));
-  float root = sqrt(math_max(math_after(sine, w.z), 1e-12f));
-  view.slant = root / (root + sqrt(math_after(root, stretched)));
+  float root = sqrt(math_max(w.z, 1e-12f));
+  view.slant = root / (root + sqrt(stretched));
   view.turn = y / math_max(x + y, 1e-30f);
   view.along = sine > 1e-12f ? stretched / math_max(sine, 1e-12f) : m.alpha_x;
   view.pad0 = 0.0f;
@@ -150,13 +150,11 @@ CDL_INLINE float energy_metal_missing(CDL_GLOBAL const float *table, Microfacets
   EnergyCell slant = energy_cell(view.slant, ENERGY_SLANTS);
   EnergyCell turn = energy_cell(view.turn, ENERGY_TURNS);
   EnergyCell x = energy_cell(energy_alpha_coordinate(m.alpha_x), ENERGY_ALPHAS);
-  float alpha_y = math_after(x.part, m.alpha_y);
-  EnergyCell y = energy_cell(energy_alpha_coordinate(alpha_y), ENERGY_ALPHAS);
+  EnergyCell y = energy_cell(energy_alpha_coordinate(m.alpha_y), ENERGY_ALPHAS);
   uint plane = ENERGY_SLANTS * ENERGY_TURNS;
   uint cube = plane * ENERGY_ALPHAS;
   uint at = cube * y.node;
   float low = energy_cube(table, at, slant, turn, x, ENERGY_SLANTS, plane);
-  turn.part = math_after(low, turn.part);
   float high = energy_cube(table, at + cube, slant, turn, x, ENERGY_SLANTS, plane);
   return energy_mix(low, high, y);
 }
@@ -164,8 +162,7 @@ CDL_INLINE float energy_metal_missing(CDL_GLOBAL const float *table, Microfacets
 /* Its mean over the cosine, > 0. */
 CDL_INLINE float energy_metal_missing_mean(CDL_GLOBAL const float *table, Microfacets m) {
   EnergyCell x = energy_cell(energy_alpha_coordinate(m.alpha_x), ENERGY_MEAN_ALPHAS);
-  float alpha_y = math_after(x.part, m.alpha_y);
-  EnergyCell y = energy_cell(energy_alpha_coordinate(alpha_y), ENERGY_MEAN_ALPHAS);
+  EnergyCell y = energy_cell(energy_alpha_coordinate(m.alpha_y), ENERGY_MEAN_ALPHAS);
   float ratio = energy_plane(table, ENERGY_METAL_MEAN_AT, x, y, ENERGY_MEAN_ALPHAS);
   return math_max(energy_spread(m) * ratio, ENERGY_MEAN_MIN);
 }
@@ -196,13 +193,10 @@ CDL_INLINE float energy_boundary_missing_mean(CDL_GLOBAL const float *table, Mic
                                               float eta) {
   float bend = energy_bend(eta);
   float x = m.alpha_x * m.alpha_x;
-  float y = math_after(x, m.alpha_y) * m.alpha_y;
+  float y = m.alpha_y * m.alpha_y;
   float a = energy_boundary_mean_at(table, fma(0.961939766f, x, 0.0380602337f * y), bend);
-  y = math_after(a, y);
   float b = energy_boundary_mean_at(table, fma(0.691341716f, x, 0.308658284f * y), bend);
-  y = math_after(b, y);
   float c = energy_boundary_mean_at(table, fma(0.308658284f, x, 0.691341716f * y), bend);
-  y = math_after(c, y);
   float d = energy_boundary_mean_at(table, fma(0.0380602337f, x, 0.961939766f * y), bend);
   return math_max(0.25f * (a + b + c + d), ENERGY_MEAN_MIN);
 }
@@ -230,9 +224,7 @@ CDL_INLINE GlassEnergy energy_glass(CDL_GLOBAL const float *all, Microfacets m, 
   GlassEnergy e;
   e.table = energy_table(all, m);
   float metal = energy_metal_missing_mean(e.table, m);
-  m.alpha_x = math_after(metal, m.alpha_x);
   float here = energy_boundary_missing_mean(e.table, m, eta);
-  m.alpha_x = math_after(here, m.alpha_x);
   float beyond = energy_boundary_missing_mean(e.table, m, 1.0f / eta);
   float denser = math_max(eta, 1.0f / eta);
   float fresnel = (denser - 1.0f) / fma(1.00071f, denser, 4.08567f);
@@ -249,7 +241,6 @@ CDL_INLINE GlassEnergy energy_glass(CDL_GLOBAL const float *all, Microfacets m, 
 /* 1 - E(w), w.z > 0, on the side from which the other has the relative index eta. */
 CDL_INLINE float energy_glass_missing(GlassEnergy e, Microfacets m, vec3 w, float eta) {
   float metal = energy_metal_missing(e.table, m, w);
-  m.alpha_x = math_after(metal, m.alpha_x);
   float glass = energy_boundary_missing(e.table, m, w, eta);
   return e.thin ? metal : glass;
 }

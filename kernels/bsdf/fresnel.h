@@ -82,8 +82,8 @@ CDL_INLINE float fresnel_conductor_channel(float cos_i, float eta, float k) {
 /* The same for RGB. */
 CDL_INLINE vec3 fresnel_conductor(float cos_i, vec3 eta, vec3 k) {
   float r = fresnel_conductor_channel(cos_i, eta.x, k.x);
-  float g = fresnel_conductor_channel(cos_i, math_after(r, eta.y), k.y);
-  float b = fresnel_conductor_channel(cos_i, math_after(g, eta.z), k.z);
+  float g = fresnel_conductor_channel(cos_i, eta.y, k.y);
+  float b = fresnel_conductor_channel(cos_i, eta.z, k.z);
   return v3(r, g, b);
 }
 

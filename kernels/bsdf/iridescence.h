@@ -54,9 +54,9 @@ CDL_INLINE ThinFilm film_make(float ior, float thickness, float cos_1) {
   film.reflectance = fresnel_schlick(fresnel_f0(n), cos_1);
   float x2, y2, z2, red2;
   float x = film_response(path, 0.846590002f, 1.6810e-3f, 1.70854696e-7f, &x2);
-  float y = film_response(math_after(x, path), 1.00022189f, 1.7953e-3f, 3.67330884e-7f, &y2);
-  float z = film_response(math_after(y, path), 1.00112249f, 2.2084e-3f, 2.61035245e-7f, &z2);
-  float red = film_response(math_after(z, path), 0.153868307f, 2.2399e-3f, 1.78766171e-7f, &red2);
+  float y = film_response(path, 1.00022189f, 1.7953e-3f, 3.67330884e-7f, &y2);
+  float z = film_response(path, 1.00112249f, 2.2084e-3f, 2.61035245e-7f, &z2);
+  float red = film_response(path, 0.153868307f, 2.2399e-3f, 1.78766171e-7f, &red2);
   film.first = film_rgb(x + red, y, z);
   film.second = film_rgb(x2 + red2, y2, z2);
   return film;
@@ -79,8 +79,8 @@ CDL_INLINE float film_channel(ThinFilm film, float f0, float first, float second
 
 CDL_INLINE vec3 film_reflectance(ThinFilm film, vec3 f0) {
   float r = film_channel(film, f0.x, film.first.x, film.second.x);
-  float g = film_channel(film, math_after(r, f0.y), film.first.y, film.second.y);
-  float b = film_channel(film, math_after(g, f0.z), film.first.z, film.second.z);
+  float g = film_channel(film, f0.y, film.first.y, film.second.y);
+  float b = film_channel(film, f0.z, film.first.z, film.second.z);
   return v3(r, g, b);
 }
 

@@ -25,7 +25,7 @@ CDL_INLINE Microfacets microfacet_surface(float alpha_x, float alpha_y, int beck
                                           int separable) {
   Microfacets m;
   m.alpha_x = math_max(alpha_x, MICROFACET_ALPHA_MIN);
-  m.alpha_y = math_max(math_after(m.alpha_x, alpha_y), MICROFACET_ALPHA_MIN);
+  m.alpha_y = math_max(alpha_y, MICROFACET_ALPHA_MIN);
   m.beckmann = beckmann;
   m.separable = separable;
   m.smooth = math_max(alpha_x, alpha_y) < MICROFACET_ALPHA_MIN;
@@ -99,19 +99,17 @@ CDL_INLINE MicrofacetLobe microfacet_evaluate(Microfacets m, vec3 wo, vec3 wi) {
   int above = wo.z > 0.0f && wi.z > 0.0f;
   float cos_o = math_max(wo.z, 1e-9f);
   float cos_i = math_max(wi.z, 1e-9f);
-  float bound = microfacet_bound(m, wo); /* before alpha is ordered: the same as in sampling */
+  float bound = microfacet_bound(m, wo);
   float d = microfacet_density(m, h);
-  m.alpha_x = math_after(d, m.alpha_x);
   float lambda_o = microfacet_lambda(m, wo);
   float g1 = 1.0f / (1.0f + lambda_o);
-  m.alpha_x = math_after(g1, m.alpha_x);
   float lambda_i = microfacet_lambda(m, wi);
   float masked = (1.0f + lambda_o) / (1.0f + lambda_o + lambda_i);
-  float ratio = m.separable ? 1.0f / (1.0f + math_after(masked, lambda_i)) : masked;
+  float ratio = m.separable ? 1.0f / (1.0f + lambda_i) : masked;
   float cos_h = math_max(0.5f * length, 1e-9f); /* wo.h and wi.h alike, whatever rounds */
   float f_cos = cos_i * microfacet_product(d, g1 * ratio, 1.0f, cos_i, cos_o);
-  float visible = microfacet_visible_density(d, g1, math_after(f_cos, cos_h), cos_o);
-  float pdf = visible * microfacet_half_vector_jacobian(math_after(visible, cos_h));
+  float visible = microfacet_visible_density(d, g1, cos_h, cos_o);
+  float pdf = visible * microfacet_half_vector_jacobian(cos_h);
   lobe.cos_h = math_min(cos_h, 1.0f);
   lobe.f_cos = above ? f_cos : 0.0f;
   lobe.pdf = above ? pdf : 0.0f;

@@ -47,14 +47,14 @@ CDL_INLINE float oren_nayar_multiple(float reflectance, float average) {
 /* f times pi. */
 CDL_INLINE vec3 oren_nayar_scaled(OrenNayarParams p, vec3 wo, vec3 wi) {
   float mu_o = math_saturate(wo.z);
-  float mu_i = math_saturate(math_after(mu_o, wi.z));
+  float mu_i = math_saturate(wi.z);
   float a = 1.0f / fma(OREN_NAYAR_C1, p.roughness, 1.0f);
   float s = fma(wo.x, wi.x, wo.y * wi.y); /* dot(wo, wi) - mu_o mu_i */
   float t = s > 0.0f ? math_max(math_max(mu_o, mu_i), 1e-9f) : 1.0f;
   float single = a * fma(p.roughness, s / t, 1.0f);
   float average = a * fma(OREN_NAYAR_C2, p.roughness, 1.0f);
   float loss_o = oren_nayar_loss(mu_o);
-  float loss_i = oren_nayar_loss(math_after(loss_o, mu_i));
+  float loss_i = oren_nayar_loss(mu_i);
   float lost = a * p.roughness * loss_o * loss_i / (OREN_NAYAR_C1 - OREN_NAYAR_C2);
   vec3 multiple = v3(oren_nayar_multiple(p.reflectance.x, average),
                      oren_nayar_multiple(p.reflectance.y, average),

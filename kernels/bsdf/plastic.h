@@ -84,7 +84,7 @@ CDL_INLINE PlasticParams plastic_params(BsdfPoint point, CDL_GLOBAL const uint *
   p.eta = math_clamp(param_float(params, CDL_PLASTIC_IOR, stride, i), 1.0f, 3.0f);
   p.spread = (p.eta - 1.0f) / (p.eta - 0.96f);
   float x2 = p.facets.alpha_x * p.facets.alpha_x;
-  float y2 = math_after(x2, p.facets.alpha_y) * p.facets.alpha_y;
+  float y2 = p.facets.alpha_y * p.facets.alpha_y;
   p.least = math_min(x2, y2);
   float most = math_max(x2, y2);
   float average = plastic_average(beckmann, sqrt(0.5f * (most + p.least)), p.eta);
@@ -92,8 +92,8 @@ CDL_INLINE PlasticParams plastic_params(BsdfPoint point, CDL_GLOBAL const uint *
   float returns = 1.0f - leaves;
   vec3 r = point.base;
   float x = r.x / (p.eta * p.eta * (1.0f - r.x * returns));
-  float y = r.y / (p.eta * p.eta * (1.0f - r.y * math_after(x, returns)));
-  float z = r.z / (p.eta * p.eta * (1.0f - r.z * math_after(y, returns)));
+  float y = r.y / (p.eta * p.eta * (1.0f - r.y * returns));
+  float z = r.z / (p.eta * p.eta * (1.0f - r.z * returns));
   p.base = v3(x, y, z);
   p.guess = v3_max(p.base) * (1.0f - average);
   return p;

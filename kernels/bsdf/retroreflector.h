@@ -33,7 +33,7 @@ CDL_INLINE RetroreflectorParams retroreflector_params(BsdfPoint point,
 /* Reflectance times what passes the coat, by channel. */
 CDL_INLINE vec3 retroreflector_tint(RetroreflectorParams p, vec3 wo, vec3 wi) {
   float in = 1.0f - fresnel_dielectric(math_saturate(wi.z), p.ior).reflectance;
-  float out = 1.0f - fresnel_dielectric(math_after(in, math_saturate(wo.z)), p.ior).reflectance;
+  float out = 1.0f - fresnel_dielectric(math_saturate(wo.z), p.ior).reflectance;
   return v3_scale(p.reflectance, in * out);
 }
 

@@ -99,8 +99,8 @@ CDL_INLINE float sheen_value(Sheen s, vec3 wo, vec3 wi) {
   float sin2 = math_clamp(fma(sum.x, sum.x, sum.y * sum.y) / length2, 0.0f, 1.0f);
   float power = math_exp2(0.5f * s.inverse * math_log2(math_max(sin2, 1e-30f)));
   float d = (2.0f + s.inverse) * CDL_INV_2PI * power;
-  float lambda_o = sheen_lambda(s, math_min(math_after(d, cos_o), 1.0f));
-  float lambda_i = sheen_lambda(s, math_min(math_after(lambda_o, cos_i), 1.0f));
+  float lambda_o = sheen_lambda(s, math_min(cos_o, 1.0f));
+  float lambda_i = sheen_lambda(s, math_min(cos_i, 1.0f));
   return d / ((1.0f + lambda_o + lambda_i) * 4.0f * cos_i * cos_o);
 }
 

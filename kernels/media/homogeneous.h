@@ -14,8 +14,8 @@ CDL_INLINE float homogeneous_transmittance_channel(float sigma, float t) {
 
 CDL_INLINE vec3 homogeneous_transmittance(vec3 sigma_t, float t) {
   float x = homogeneous_transmittance_channel(sigma_t.x, t);
-  float y = homogeneous_transmittance_channel(math_after(x, sigma_t.y), t);
-  float z = homogeneous_transmittance_channel(math_after(y, sigma_t.z), t);
+  float y = homogeneous_transmittance_channel(sigma_t.y, t);
+  float z = homogeneous_transmittance_channel(sigma_t.z, t);
   return v3(x, y, z);
 }
 
@@ -31,8 +31,8 @@ CDL_INLINE float homogeneous_transmittance_integral(float sigma, float t) {
  * per metre. Without emission 0, even over an infinite stretch. */
 CDL_INLINE vec3 homogeneous_emission(vec3 emission, vec3 sigma_t, float t) {
   float x = emission.x * homogeneous_transmittance_integral(sigma_t.x, t);
-  float y = emission.y * homogeneous_transmittance_integral(math_after(x, sigma_t.y), t);
-  float z = emission.z * homogeneous_transmittance_integral(math_after(y, sigma_t.z), t);
+  float y = emission.y * homogeneous_transmittance_integral(sigma_t.y, t);
+  float z = emission.z * homogeneous_transmittance_integral(sigma_t.z, t);
   return v3(emission.x > 0.0f ? x : 0.0f, emission.y > 0.0f ? y : 0.0f,
             emission.z > 0.0f ? z : 0.0f);
 }

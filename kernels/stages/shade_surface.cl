@@ -95,7 +95,6 @@ CDL_INLINE BsdfValue evaluate(Vertex at, BsdfParams p, vec3 wi) {
   BsdfValue value = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, wi));
 #if CDL_SHADE_FOLDS
   int folds = (at.flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
-  wi.x = math_after(value.pdf, wi.x);
   BsdfValue image = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, mirror_image(at, wi)));
   value.f_cos = v3_add(value.f_cos, v3_select(folds, image.f_cos, v3_all(0.0f)));
   value.pdf += folds ? image.pdf : 0.0f;
@@ -104,10 +103,9 @@ CDL_INLINE BsdfValue evaluate(Vertex at, BsdfParams p, vec3 wi) {
 }
 
 #if CDL_SHADE_LIT && defined(CDL_LIGHTS)
-/* The shadow ray of the light that was sampled, with what it adds if it arrives; returns the
- * density with which the model would have sampled it. */
-CDL_INLINE float store_direct(Vertex at, BsdfParams p, vec3 throughput, CDL_GLOBAL uint *work,
-                              size_t stride, size_t i) {
+/* The shadow ray of the light that was sampled, with what it adds if it arrives. */
+CDL_INLINE void store_direct(Vertex at, BsdfParams p, vec3 throughput, CDL_GLOBAL uint *work,
+                             size_t stride, size_t i) {
   vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
   float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
   BsdfValue value = evaluate(at, p, to_light);
@@ -131,14 +129,12 @@ CDL_INLINE float store_direct(Vertex at, BsdfParams p, vec3 throughput, CDL_GLOB
                  behind ? at.beyond.outer : at.before.outer);
   state_set_vec3(work, CDL_WORK_SHADOW_RADIANCE, stride, i, direct);
   state_set_uint(work, CDL_WORK_SHADOW_COUNT, stride, i, v3_max(direct) > 0.0f ? 1u : 0u);
-  return value.pdf;
 }
 #endif
 
 #if CDL_SHADE_FOLDS
 /* Density of the direction whose mirror image was sampled. */
-CDL_INLINE float evaluate_image(Vertex at, BsdfParams p, vec3 wi, float after) {
-  wi.x = math_after(after, wi.x);
+CDL_INLINE float evaluate_image(Vertex at, BsdfParams p, vec3 wi) {
   int folds = (at.flags & CDL_MATERIAL_NORMAL_MAPPED) != 0u;
   BsdfValue image = bsdf_evaluate(p, at.wo, frame_to_local(at.shading, mirror_image(at, wi)));
   return folds ? image.pdf : 0.0f;
@@ -175,14 +171,12 @@ CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict pa
     vertex_random(at.random, counts_vertex(at.counts), CDL_PAIR_DIRECTION, &u, &v);
     vertex_random(at.random, counts_vertex(at.counts), CDL_PAIR_LOBE, &lobe, &chance);
 #if CDL_SHADE_LIT && defined(CDL_LIGHTS)
-    float light_value_pdf = store_direct(at, p, point.throughput, work, stride, i);
-    u = math_after(light_value_pdf, u); /* evaluated once for the light, once for the sample */
-    v = math_after(light_value_pdf, v);
+    store_direct(at, p, point.throughput, work, stride, i);
 #endif
     BsdfSample sample = bsdf_sample_model(p, at.wo, u, v, lobe);
     vec3 wi = frame_to_world(at.shading, sample.wi);
 #if CDL_SHADE_FOLDS
-    float image_pdf = evaluate_image(at, p, wi, sample.pdf);
+    float image_pdf = evaluate_image(at, p, wi);
     sample.pdf += image_pdf;
     wi = fold(at, wi);
 #endif
