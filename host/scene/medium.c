@@ -18,8 +18,7 @@ static cdl_Status read_phase(Builder *builder, const char *pointer, const json_t
                              cdl_SceneMedium *medium) {
   const char *type = json_get_string(json, "type", "isotropic");
   if (strcmp(type, "hg") == 0) {
-    medium->phase = CDL_PHASE_HG;
-    medium->g = (float)json_get_number(json, "g", 0);
+    medium->phase.g[0] = (float)json_get_number(json, "g", 0);
     return CDL_OK;
   }
   if (strcmp(type, "isotropic") == 0) return CDL_OK;
@@ -30,7 +29,7 @@ static cdl_Status read_phase(Builder *builder, const char *pointer, const json_t
 
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json,
                         uint32_t *index) {
-  cdl_SceneMedium medium = {.phase = CDL_PHASE_ISOTROPIC};
+  cdl_SceneMedium medium = {0};
   *index = CDL_NONE;
   if (json_object_get(json, "grid")) {
     document_note(builder->doc, NULL, pointer,
@@ -65,15 +64,14 @@ static float single_albedo(float many) {
  * KHR_materials_volume_scatter says which part of the extinction is scattering. */
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index) {
-  cdl_SceneMedium medium = {.phase = CDL_PHASE_ISOTROPIC};
+  cdl_SceneMedium medium = {0};
   float colour[3] = {1, 1, 1}, many[3] = {0, 0, 0}, most = 0;
   double distance = json_get_number(volume, "attenuationDistance", INFINITY);
   *index = CDL_NONE;
   json_get_numbers(volume, "attenuationColor", 3, colour);
   json_get_numbers(scatter, "multiscatterColor", 3, many);
   json_get_numbers(scatter, "multiscatterColorFactor", 3, many);
-  medium.g = (float)json_get_number(scatter, "scatterAnisotropy", 0);
-  if (medium.g != 0) medium.phase = CDL_PHASE_HG;
+  medium.phase.g[0] = (float)json_get_number(scatter, "scatterAnisotropy", 0);
   for (int c = 0; c < 3; c++) {
     double depth = -math_log(fmaxf(colour[c], 1e-6f));
     double sigma = fmin(depth / fmax(distance, 1e-30), 1e30);

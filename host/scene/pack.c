@@ -40,13 +40,17 @@ static cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pac
                     scene->path, scene->medium_count);
   pack->media = pack_array(log, "media", pack->medium_count, sizeof *pack->media);
   if (!pack->media) return CDL_BAD_INPUT;
+  pack->media[CDL_MEDIUM_VACUUM].density = CDL_NONE;
   for (uint32_t i = 0; i < scene->medium_count; i++) {
     const cdl_SceneMedium *from = &scene->media[i];
     cdl_Medium *to = &pack->media[i + 1]; /* 0 is vacuum */
     memcpy(to->absorption, from->absorption, sizeof to->absorption);
     memcpy(to->scattering, from->scattering, sizeof to->scattering);
     memcpy(to->emission, from->emission, sizeof to->emission);
-    to->g = from->phase == CDL_PHASE_HG ? from->g : 0.0f;
+    memcpy(to->g, from->phase.g, sizeof to->g);
+    memcpy(to->alpha, from->phase.alpha, sizeof to->alpha);
+    to->second = from->phase.second;
+    to->density = to->temperature = to->color = CDL_NONE;
     to->emissive = from->emission[0] > 0 || from->emission[1] > 0 || from->emission[2] > 0;
   }
   pack->scene_medium = scene->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : scene->medium + 1u;

@@ -130,13 +130,17 @@ typedef struct cdl_SceneCamera {
   float shutter[2];                      /* s */
 } cdl_SceneCamera;
 
-typedef enum cdl_PhaseType { CDL_PHASE_ISOTROPIC, CDL_PHASE_HG } cdl_PhaseType;
+/* A phase function: a mixture of two lobes of Draine's (media/phase.h). */
+typedef struct cdl_ScenePhase {
+  float g[2];     /* asymmetry, (-1,1) */
+  float alpha[2]; /* >= 0; 0: Henyey and Greenstein's */
+  float second;   /* weight of the second lobe, [0,1] */
+} cdl_ScenePhase;
 
 typedef struct cdl_SceneMedium {
   float absorption[3], scattering[3]; /* 1/m, scale included */
   float emission[3];                  /* radiance per metre */
-  cdl_PhaseType phase;
-  float g;
+  cdl_ScenePhase phase;
 } cdl_SceneMedium;
 
 typedef struct cdl_SceneEnvironment {

@@ -16,7 +16,7 @@ CDL_FUNCTION void shade_medium_strip(size_t first, CDL_CONSTANT cdl_Params *rest
     size_t stride = wave->stride;
     MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-    float g = media[media_current(stack, params->scene_medium)].g;
+    float g = media[media_current(stack, params->scene_medium)].g[0];
     vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
     vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);

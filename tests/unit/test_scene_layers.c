@@ -30,7 +30,7 @@ static void test_volume_scatter(void **state) {
   double s = sqrt(medium->absorption[2] / (medium->absorption[2] + medium->scattering[2]));
   assert_true(fabs((1 - s) * (1 - 0.139 * s) / (1 + 1.17 * s) - 0.5) < 0.005);
   NEAR(medium->absorption[2] + medium->scattering[2], log(4) / 2);
-  NEAR(medium->g, -0.5);
+  NEAR(medium->phase.g[0], -0.5);
   scene_free(scene);
 }
 
