@@ -31,6 +31,7 @@ CDL_INLINE BsdfPoint test_point(__global const BsdfSetup *setup, __global const 
   point.channel_choice = setup->channel_choice;
   point.flags = setup->flags;
   point.front = setup->front;
+  point.mirrored = 0;
   point.energy = energy;
   return point;
 }
@@ -206,6 +207,7 @@ __kernel void stress(__global const BsdfSetup *setup, __global const uint *param
     point.channel_choice = test_unit(seed, item, 28u);
     point.flags = rng_hash2((uint)item, seed + 99u) & setup->flags;
     point.front = test_unit(seed, item, 29u) < 0.5f;
+    point.mirrored = test_unit(seed, item, 33u) < 0.5f;
     ModelParams p = model_params(point, params, setup->param_sets, item & (setup->param_sets - 1u));
     BsdfSample s = model_sample(p, wo, test_unit(seed, item, 9u), test_unit(seed, item, 10u),
                                 test_unit(seed, item, 11u));

@@ -43,26 +43,34 @@ static const double nodes[4] = {-0.861136311594053, -0.339981043584856, 0.339981
 static const double weights[4] = {0.347854845137454, 0.652145154862546, 0.652145154862546,
                                   0.347854845137454};
 
-/* Cuts the angles of a ring to those above the horizon. */
-static void clip(const BsdfChart *c, double s, double radius, double *low, double *high) {
-  double rise = radius * c->axes[1][2], level = (1 - s) * c->axes[2][2], end = M_PI;
-  if (level <= -rise) end = 0;
-  if (fabs(level) < rise) {
-    double cosine = -level / rise;
-    end = atan2(sqrt(1 - cosine * cosine), c->aspect * cosine);
-  }
-  *low = fmax(*low, -end);
-  *high = fmin(*high, end);
+static double distance(const BsdfChart *c, double x) { return c->spread * expm1(x * c->range); }
+
+/* Where a ring meets the horizon, +-the angle: 0 if it is below, pi if above. */
+static double horizon(const BsdfChart *c, double s) {
+  double radius = sqrt(fmax(s * (2 - s), 0));
+  double rise = radius * c->axes[1][2], level = (1 - s) * c->axes[2][2];
+  if (level <= -rise) return 0;
+  if (fabs(level) >= rise) return M_PI;
+  double cosine = -level / rise;
+  return atan2(sqrt(1 - cosine * cosine), c->aspect * cosine);
+}
+
+static double angle_of(double y) { return 2 * M_PI * (y - 0.5); }
+
+/* Whether the horizon runs through a cell, which is on one side of y = 1/2. */
+static int has_horizon(const BsdfChart *c, double x0, double x1, double y0, double y1) {
+  double a = fabs(angle_of(y0)), b = fabs(angle_of(y1));
+  double e0 = horizon(c, distance(c, x0)), e1 = horizon(c, distance(c, x1));
+  return fmax(e0, e1) > fmin(a, b) && fmin(e0, e1) < fmax(a, b);
 }
 
 /* Gauss and Legendre, 4 x 4 points; x in [0,1], y in turns. */
 static double gauss(const BsdfChart *c, double x0, double x1, double y0, double y1) {
   double hx = 0.5 * (x1 - x0), sum = 0;
   for (int i = 0; i < 4; i++) {
-    double s = c->spread * expm1((x0 + hx * (1 + nodes[i])) * c->range);
-    double radius = sqrt(fmax(s * (2 - s), 0)), line = 0;
-    double low = 2 * M_PI * (y0 - 0.5), high = 2 * M_PI * (y1 - 0.5);
-    clip(c, s, radius, &low, &high);
+    double s = distance(c, x0 + hx * (1 + nodes[i])), line = 0;
+    double radius = sqrt(fmax(s * (2 - s), 0)), end = horizon(c, s);
+    double low = fmax(angle_of(y0), -end), high = fmin(angle_of(y1), end);
     double hy = 0.5 * (high - low);
     if (hy <= 0) continue;
     for (int j = 0; j < 4; j++)
@@ -78,8 +86,9 @@ static double refine(const BsdfChart *c, double x0, double x1, double y0, double
   double parts[4], sum = 0;
   for (int i = 0; i < 4; i++)
     sum += parts[i] = gauss(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1]);
-  int done = fabs(sum - whole) <= fmax(3e-4 * sum, 1e-7);
-  if (depth == MAX_DEPTH || (done && depth >= c->least_depth)) return sum;
+  int done = fabs(sum - whole) <= fmax(2e-4 * sum, 2e-7);
+  done = done && (depth >= c->horizon_depth || !has_horizon(c, x0, x1, y0, y1));
+  if (depth == MAX_DEPTH || done) return sum;
   sum = 0;
   for (int i = 0; i < 4; i++)
     sum += refine(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1], parts[i], depth + 1);

@@ -1,6 +1,7 @@
 /* bsdf_models.h: the material models and the parameters with which test_bsdf.c tests them.
  *
- * A new model is one row of BSDF_MODELS, the ranges of its parameters, and cases. */
+ * A new model is one row of BSDF_MODELS, the ranges of its parameters, and cases; none of those
+ * that shading kernels are made for can be left out. */
 #ifndef CANDELA_TESTS_BSDF_MODELS_H
 #define CANDELA_TESTS_BSDF_MODELS_H
 
@@ -37,7 +38,7 @@ enum {
 };
 
 /* Of a parameter's word: uniform in [low, high], or, half the time, in the logarithm from
- * `fine` > 0 on. A list ends with high 0 and low 0. */
+ * `fine` > 0 on. */
 typedef struct BsdfRange {
   float low, high, fine;
 } BsdfRange;
@@ -47,7 +48,8 @@ typedef struct BsdfModel {
   int transmits;
   unsigned flags;
   float weight_max;
-  const BsdfRange *ranges; /* of each word */
+  const BsdfRange *ranges; /* of each word, */
+  size_t words;            /* as many as there are */
   /* The parameters at a point from their words, as a model keeps them, in `params` (which has
    * BSDF_PARAMS_SIZE bytes); and their evaluation. */
   void (*prepare)(void *params, BsdfPoint point, const uint *words);
@@ -66,19 +68,25 @@ typedef struct BsdfCase {
   int inside; /* 1: wo is on the back */
   float words[CDL_PARAM_MAX];
   float coat_normal[2]; /* x, y */
-  float width;          /* of the narrowest lobe, its alpha; 1: a cosine */
-  int center;           /* BSDF_CENTER_* */
-  float eta;            /* index inside over outside where light is refracted; else 0 */
-  float energy;         /* the most that it may return of uniform light; 0: 1 */
-  float least;          /* and the least, */
-  float least_cosine;   /* at views from this cosine up */
-  float reciprocity;    /* relative; 0: 1e-3; negative: not reciprocal, as published */
+  float abbe;           /* > 0: the path is left one channel and its wavelength, of [0,1) */
+  int channel;
+  float wavelength;
+  float width;        /* of the narrowest lobe, its alpha; 1: a cosine */
+  int center;         /* BSDF_CENTER_* */
+  float eta;          /* index inside over outside where light is refracted; else 0 */
+  float energy;       /* the most that it may return of uniform light; 0: 1 */
+  float least;        /* and the least, */
+  float least_cosine; /* at views from this cosine up */
+  float reciprocity;  /* relative; 0: 1e-3; negative: not reciprocal, as published */
 } BsdfCase;
 
 /* Where the narrowest lobe above the surface has its middle. */
 enum { BSDF_CENTER_MIRROR, BSDF_CENTER_NORMAL, BSDF_CENTER_VIEW };
 
-/* Ends with a NULL name. */
-extern const BsdfCase bsdf_cases[];
+/* Each ends with a NULL name. */
+extern const BsdfCase bsdf_cases_opaque[], bsdf_cases_glass[], bsdf_cases_gltf[];
+
+/* The cases of all lists; NULL beyond the last. */
+const BsdfCase *bsdf_case(size_t index);
 
 #endif
