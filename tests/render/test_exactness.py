@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """One film, bit for bit: film_sha256 of scenes that between them reach every kernel is equal on
 PoCL as it is, with code for SSE2 and AVX2, in plain loops, on one thread and two and on the
-basic device, on Mesa's rusticl, with both layouts of the tree, for every cut into parts that are
-merged, every crop, and after every interruption.
+basic device, on Mesa's rusticl, with both layouts of the tree, on processors for which the C
+library has other functions, for every cut into parts that are merged, every crop, and after every
+interruption.
 
 Equal hashes leave nothing to chance. Scenes are small, since each device compiles every kernel
 anew; under CDL_SOAK rusticl gets all scenes, and there are more cuts and interruptions."""
@@ -10,15 +11,19 @@ import hashlib
 import json
 import os
 import random
+import re
+import shutil
 import signal
 import subprocess
 import time
 
 import numpy as np
 
-from support import crowd
+import test_animation as moving
+from support import crowd, libm
 from support.images import read_exr
 from support.render import CANDELA, FOLDER, render, run, scratch
+from support.shapes import look_at, move, quad, sphere
 from support.verdict import check, main, skip
 
 SOAK = bool(os.environ.get("CDL_SOAK"))
@@ -118,6 +123,88 @@ def test_trees():
     same("with --profile and --trace", "plain", ("--profile", "--trace", scratch(".json")))
 
 
+def delicate(textures=(0.5,), brushes=(0.3,), glasses=((0.5, 0.7),)):
+    """What the host takes sines, arc tangents and logarithms for: rotated textures, brushed
+    surfaces, colours of glass, a spot, a turned sky, a lens of blades, and slerps of bones and
+    nodes under an open shutter. Angles, and (colour, distance) of glass, are the caller's."""
+    s = moving.skinned(component=moving.FLOAT)
+    for number, angle in enumerate(textures):
+        codes = np.random.default_rng(number).integers(0, 256, (16, 16, 3)).astype(np.uint8)
+        paper = s.material(metallic=0, pbrMetallicRoughness={
+            "baseColorTexture": s.texture(codes, transform={"rotation": angle})})
+        tile = quad((0, 0, 0), (0.5, 0, 0), (0, 0.5, 0))
+        tile["uv0"] = tile["positions"][:, :2] + 0.7
+        s.add(tile, paper, move(1.1 * number, 2, -0.5))
+    ball = sphere(0.5, (0, 0, 0), 24, 12, smooth=True)
+    ball["uv0"] = ball["positions"][:, :2]
+    for number, angle in enumerate(brushes):
+        brushed = s.material(metallic=1, roughness=0.4, extensions={"KHR_materials_anisotropy": {
+            "anisotropyStrength": 0.8, "anisotropyRotation": angle}})
+        s.add(ball, brushed, move(1.1 * number - 0.5, -1.5, 0.5))
+    for number, (colour, distance) in enumerate(glasses):
+        glass = s.material(metallic=0, roughness=0.1, extensions={
+            "KHR_materials_transmission": {"transmissionFactor": 1},
+            "KHR_materials_volume": {"thicknessFactor": 1, "attenuationDistance": distance,
+                                     "attenuationColor": [colour, 0.8, 1]}})
+        s.add(ball, glass, move(1.1 * number + 2, -1.5, 0.5))
+    s.animation()
+    for skin in s.json["skins"]:
+        s.channel((skin["joints"][2], "rotation"), [0, 1],
+                  s.values([moving.turned(10), moving.turned(70, (1, 2, 1))], "VEC4"))
+    s.add(ball, s.interface({"scattering": [1, 2, 3], "absorption": [0.1, 0, 0],
+                             "phase": {"type": "hg", "g": 0.4}}), move(-1, 0.5, 0.5))
+    s.light("spot", (80, 70, 60), look_at((3, 4, 5), (1, 0, 0)),
+            spot={"innerConeAngle": 0.2, "outerConeAngle": 0.45})
+    s.environment(image=np.random.default_rng(4).uniform(0, 1, (16, 32, 3)), rotation=77)
+    s.camera(look_at((1.5, 0.5, 8), (1.5, 0, 0)), yfov=33, aspect=1.5, apertureRadius=0.05,
+             focusDistance=7.5, blades=7, shutter=[0.0, 0.1])
+    return s
+
+
+def test_c_library():
+    """The films of a processor with fused multiply-add and of one without, as far as the C library
+    goes; kernels are compiled alike. Scenes have the very angles and colours for which its results
+    differ in single precision, if there are any, so that its use would show."""
+    angles, glasses = libm.angles("cos") + libm.angles("sin"), libm.attenuations()
+    if not angles or not glasses:
+        skip("numbers that the C library rounds otherwise", "none found; it may have one variant")
+    chance = random.Random(5)
+    for what, given in (
+            ("as it comes", {}),
+            ("rotated textures", {"textures": chance.sample(angles, min(4, len(angles)))}),
+            ("brushed surfaces", {"brushes": chance.sample(angles, min(3, len(angles)))}),
+            ("coloured glass", {"glasses": chance.sample(glasses, min(3, len(glasses)))})):
+        if given and not list(given.values())[0]:
+            continue
+        path = delicate(**given).write(scratch(".gltf"))
+        one, other = (render(path, SIZE, SPP, DEPTH, 5, None, ("--at", "0.37"), environment)
+                      for environment in ({"GLIBC_TUNABLES": ""}, libm.OLDER))
+        check("%s: is not dark" % what, 0.05 < one.rgb.mean() < 5, "%g" % one.rgb.mean())
+        check("%s: on an older processor" % what, one.sha256 == other.sha256,
+              "%d pixels differ" % (one.rgb != other.rgb).any(-1).sum())
+    for name in ("everything", "layers", "fog"):
+        same("on an older processor", name, environment=libm.OLDER)
+
+
+def test_symbols():
+    """No part of the host asks the C library for a function that is not exact, but for those that
+    draw pictures of a film and measure them."""
+    archive = os.path.join(os.path.dirname(CANDELA), "libcandela.a")
+    if not os.path.exists(archive) or not shutil.which("nm"):
+        skip("what is asked of the C library", "libcandela.a or nm is not here")
+        return
+    listed = subprocess.run(["nm", "--undefined-only", "--print-file-name", archive],
+                            capture_output=True, text=True, check=True).stdout
+    functions = r"(?:a?(?:sin|cos|tan)h?|atan2|sincos|(?:exp|log)(?:2|10|m1|1p)?|pow|cbrt|hypot)"
+    inexact = re.compile(r"(\w+)\.c(?:pp)?\.o: +U (?:__)?(%s[fl]?)(?:_finite)?(?:@.*)?$" %
+                         functions, re.M)
+    asked = set(inexact.findall(listed))
+    pictures = {"bsdf_plot", "canvas", "compare", "ssim", "tonemap"}
+    check("this test sees what is asked", ("tonemap", "powf") in asked)
+    wrong = sorted("%s.c: %s" % pair for pair in asked if pair[0] not in pictures)
+    check("nothing inexact is asked of the C library", not wrong, ", ".join(wrong))
+
+
 def parts(total, chance):
     """A random cut of the samples: (first, count), multiples of 16 but for the end."""
     blocks = -(-total // 16)
@@ -205,5 +292,5 @@ def test_interruptions():
 
 
 if __name__ == "__main__":
-    main(test_scenes_show_something, test_pocl, test_rusticl, test_trees, test_parts, test_crops,
-         test_interruptions)
+    main(test_scenes_show_something, test_pocl, test_rusticl, test_trees, test_c_library,
+         test_symbols, test_parts, test_crops, test_interruptions)
