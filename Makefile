@@ -36,7 +36,7 @@ clean:
 
 # --- How things are compiled.
 
-PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf draco
+PACKAGES := OpenImageIO libpng jansson nettle OpenCL tinygltf draco Imath
 NEEDS_COMPILER := $(filter-out deps demo gallery test bench check soak clean,$(or $(MAKECMDGOALS),all))
 ifneq ($(NEEDS_COMPILER),)
 PACKAGE_CFLAGS := $(shell pkg-config --cflags $(PACKAGES))
@@ -55,8 +55,8 @@ COMMON += -MMD -MP $(if $(SANITIZE),-fsanitize=$(SANITIZE) -fno-sanitize-recover
 ALL_CFLAGS = -std=gnu11 $(COMMON) $(CFLAGS)
 ALL_CXXFLAGS = -std=c++17 $(COMMON) $(CXXFLAGS)
 LINK = $(CXX) -fopenmp $(if $(SANITIZE),-fsanitize=$(SANITIZE)) $(LDFLAGS)
-# meshoptimizer has no pkg-config file.
-LIBS := $(PACKAGE_LIBS) -lmeshoptimizer -lm -lpthread
+# meshoptimizer and OpenVDB have no pkg-config files; OpenVDB needs TBB and Imath.
+LIBS := $(PACKAGE_LIBS) -lmeshoptimizer -lopenvdb -ltbb -lm -lpthread
 
 LIB_SOURCES := $(filter-out host/cli/%,$(wildcard host/*/*.c host/*/*.cpp))
 LIB_OBJECTS := $(LIB_SOURCES:%=$(B)/obj/%.o) $(B)/obj/kernel_sources.c.o

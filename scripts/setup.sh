@@ -5,7 +5,7 @@ set -euo pipefail
 
 build="gcc g++ make pkg-config pocl-opencl-icd ocl-icd-opencl-dev opencl-c-headers
   libopenimageio-dev libpng-dev libtinygltf-dev nlohmann-json3-dev libstb-dev libjansson-dev nettle-dev
-  libdraco-dev libmeshoptimizer-dev"
+  libdraco-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev"
 test="libcmocka-dev mesa-opencl-icd oclgrind python3 python3-numpy"
 bench="libembree-dev python3"
 check="clang-format cppcheck"

@@ -58,6 +58,10 @@ cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *jso
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index);
 
+/* medium_grid.c: the grids of a medium and where they lie, over what medium.c says; NULL: none. */
+cdl_Status build_medium_grid(Builder *builder, const char *pointer, const json_t *json,
+                             cdl_SceneMedium *medium);
+
 /* texture.c: a textureInfo object, or none (NULL). */
 cdl_Status build_texture_ref(Builder *builder, const char *pointer, const json_t *info,
                              cdl_TextureRef *ref);

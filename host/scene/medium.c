@@ -29,13 +29,8 @@ static cdl_Status read_phase(Builder *builder, const char *pointer, const json_t
 
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json,
                         uint32_t *index) {
-  cdl_SceneMedium medium = {0};
+  cdl_SceneMedium medium = {.density = CDL_NONE, .temperature = CDL_NONE, .color = CDL_NONE};
   *index = CDL_NONE;
-  if (json_object_get(json, "grid")) {
-    document_note(builder->doc, NULL, pointer,
-                  "a medium with a grid is not supported; nothing fills the surface.");
-    return extension_mark(builder, "CDL_medium", CDL_EXTENSION_UNSUPPORTED);
-  }
   cdl_Status status = read_phase(builder, pointer, json_object_get(json, "phase"), &medium);
   if (status) return status;
   json_get_numbers(json, "absorption", 3, medium.absorption);
@@ -49,7 +44,8 @@ cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *jso
       return document_fail(builder->doc, pointer, "VALUE_NOT_IN_RANGE",
                            "scale times the coefficients is beyond single precision.");
   }
-  return add_medium(builder, &medium, index);
+  status = build_medium_grid(builder, pointer, json_object_get(json, "grid"), &medium);
+  return status ? status : add_medium(builder, &medium, index);
 }
 
 /* Albedo of one collision for the colour that many give (Kulla and Conty 2017). */
@@ -64,7 +60,7 @@ static float single_albedo(float many) {
  * KHR_materials_volume_scatter says which part of the extinction is scattering. */
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index) {
-  cdl_SceneMedium medium = {0};
+  cdl_SceneMedium medium = {.density = CDL_NONE, .temperature = CDL_NONE, .color = CDL_NONE};
   float colour[3] = {1, 1, 1}, many[3] = {0, 0, 0}, most = 0;
   double distance = json_get_number(volume, "attenuationDistance", INFINITY);
   *index = CDL_NONE;

@@ -253,6 +253,8 @@ void scene_free(struct cdl_Scene *scene) {
   free(scene->image_names);
   free(scene->lights);
   free(scene->cameras);
+  for (uint32_t i = 0; i < scene->grid_count; i++) grid_free(&scene->grids[i]);
+  free(scene->grids);
   free(scene->media);
   free(scene->extensions);
   free(scene->object_names);

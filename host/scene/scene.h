@@ -13,6 +13,7 @@
 #include "abi/texture.h"
 #include "candela.h"
 #include "image/image.h"
+#include "scene/grid.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -141,6 +142,12 @@ typedef struct cdl_SceneMedium {
   float absorption[3], scattering[3]; /* 1/m, scale included */
   float emission[3];                  /* radiance per metre */
   cdl_ScenePhase phase;
+  uint32_t density;        /* grid that multiplies absorption and scattering, or CDL_NONE */
+  uint32_t temperature;    /* grid whose value times temperature_scale is kelvin, or CDL_NONE */
+  uint32_t color;          /* grid of 3 channels that multiplies the scattering, or CDL_NONE */
+  float temperature_scale; /* K */
+  double to_index[12]; /* from the space of the node that holds the surface, or of the world for the
+                          scene's medium, to the index space that all its grids share */
 } cdl_SceneMedium;
 
 typedef struct cdl_SceneEnvironment {
@@ -181,6 +188,7 @@ struct cdl_Scene {
   cdl_SceneLight *lights;
   cdl_SceneCamera *cameras; /* at least one: a framing camera where the file has none */
   cdl_SceneMedium *media;
+  cdl_SceneGrid *grids;
   cdl_SceneExtension *extensions;
   /* The same scene at later times of the exposure, evenly spaced up to its end, alike but for where
    * vertices, instances and cameras are; only those count. The scene itself is as it begins. */
@@ -190,7 +198,8 @@ struct cdl_Scene {
   cdl_SceneAnimation *animations;
   char **variants; /* names of KHR_materials_variants */
   uint32_t mesh_count, instance_count, material_count, texture_count, image_count, light_count,
-      camera_count, medium_count, extension_count, object_count, animation_count, variant_count;
+      camera_count, medium_count, grid_count, extension_count, object_count, animation_count,
+      variant_count;
   uint32_t medium; /* what fills the rest of the scene: index or CDL_NONE */
   cdl_SceneEnvironment environment;
   float bounds[2][3]; /* of all instances in the world; min > max when there are none */

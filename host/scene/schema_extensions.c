@@ -177,6 +177,7 @@ static SCHEMA(schema_phase, "phase", phase);
 static const Member grid[] = {STRING("uri", REQUIRED),
                               STRING("density", 0),
                               STRING("temperature", NULLABLE),
+                              STRING("color", NULLABLE),
                               NUMBER("temperatureScale", 0, 0, INFINITY),
                               {.name = "bounds", .type = MEMBER_ANY},
                               END};
