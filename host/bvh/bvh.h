@@ -42,6 +42,7 @@ typedef struct cdl_BvhPlacement {
   uint32_t mask;
   uint32_t object;
   uint32_t first_light;
+  uint32_t medium;
 } cdl_BvhPlacement;
 
 /* Zeros mean the defaults. None of these changes what a ray hits. */

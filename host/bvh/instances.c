@@ -71,7 +71,8 @@ int instance_place(const cdl_BvhPlacement *placement, const Tree *mesh, cdl_BvhI
   *instance = (cdl_BvhInstance){.mask = placement->mask,
                                 .mesh = placement->mesh,
                                 .object = placement->object,
-                                .first_light = placement->first_light};
+                                .first_light = placement->first_light,
+                                .medium = placement->medium};
   memcpy(instance->to_world, placement->to_world, sizeof instance->to_world);
   int usable = mesh->nodes && invert(placement->to_world, instance->to_object);
   if (is_identity(placement->to_world)) {

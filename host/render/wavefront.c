@@ -44,6 +44,7 @@ static cdl_Status trace(cdl_Wavefront *w) {
   cdl_Status status = run_all(w, CDL_KERNEL_intersect, w->wave.live);
   if (!status && w->features.opacity) status = run_all(w, CDL_KERNEL_opacity, w->wave.live);
   if (!status && w->features.media) status = run_all(w, CDL_KERNEL_sample_medium, w->wave.live);
+  if (!status && w->features.grids) status = run_all(w, CDL_KERNEL_sample_grid, w->wave.live);
   return status;
 }
 

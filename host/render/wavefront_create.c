@@ -41,6 +41,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->vertex_colors, "CDL_VERTEX_COLORS");
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
+  add_option(options, sizeof options, f->grids, "CDL_GRIDS");
   add_option(options, sizeof options, f->motion, "CDL_MOTION");
   add_option(options, sizeof options, !f->dispersion, "CDL_DISPERSION=0");
   add_option(options, sizeof options, !f->energy_compensation, "CDL_ENERGY_COMPENSATION=0");
@@ -83,6 +84,7 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   list_add(list, 1, CDL_KERNEL_intersect);
   list_add(list, f->opacity, CDL_KERNEL_opacity);
   list_add(list, f->media, CDL_KERNEL_sample_medium);
+  list_add(list, f->grids, CDL_KERNEL_sample_grid);
   list_add(list, 1, CDL_KERNEL_queue_count);
   list_add(list, 1, CDL_KERNEL_queue_scan);
   list_add(list, 1, CDL_KERNEL_queue_scatter);
@@ -162,6 +164,11 @@ static cdl_Status upload_scene(cdl_Wavefront *w, const cdl_Pack *pack) {
       {BUFFER_environment_cells, pack->environment_cells,
        pack->cell_count * sizeof *pack->environment_cells},
       {BUFFER_media, pack->media, pack->medium_count * sizeof *pack->media},
+      {BUFFER_grids, pack->grids, pack->grid_count * sizeof *pack->grids},
+      {BUFFER_grid_table, pack->grid_table, pack->grid_entries * sizeof *pack->grid_table},
+      {BUFFER_grid_most, pack->grid_most, pack->grid_most_count * sizeof *pack->grid_most},
+      {BUFFER_grid_values, pack->grid_values, pack->grid_value_count * sizeof *pack->grid_values},
+      {BUFFER_blackbody, pack->blackbody, pack->blackbody_count * sizeof *pack->blackbody},
       {BUFFER_energy_table, pack->energy_table, pack->energy_count * sizeof *pack->energy_table},
   };
   double start = clock_now();

@@ -53,3 +53,20 @@ void matrix_cofactors(const Matrix *a, double out[9]) {
       out[3 * r + c] = m[r1 + c1] * m[r2 + c2] - m[r1 + c2] * m[r2 + c1];
     }
 }
+
+int matrix_invert(const Matrix *a, Matrix *inverse) {
+  double cofactors[9], determinant = 0;
+  matrix_cofactors(a, cofactors);
+  for (int c = 0; c < 3; c++) determinant += a->m[c] * cofactors[c];
+  *inverse = (Matrix){{0}};
+  if (!isnormal(determinant)) return 0;
+  for (int r = 0; r < 3; r++) {
+    double moved = 0;
+    for (int c = 0; c < 3; c++) {
+      inverse->m[4 * r + c] = cofactors[3 * c + r] / determinant;
+      moved -= inverse->m[4 * r + c] * a->m[4 * c + 3];
+    }
+    inverse->m[4 * r + 3] = moved;
+  }
+  return 1;
+}

@@ -31,6 +31,9 @@ void matrix_apply(const Matrix *a, const double in[3], double w, double out[3]);
  * division, so that flat transforms have one, too. Row-major 3x3. */
 void matrix_cofactors(const Matrix *a, double out[9]);
 
+/* 0, and all zeros, where the linear part has no inverse. */
+int matrix_invert(const Matrix *a, Matrix *inverse);
+
 #ifdef __cplusplus
 }
 #endif

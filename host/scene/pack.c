@@ -33,31 +33,6 @@ double pack_scene_radius(const cdl_Pack *pack) {
   return 0.5 * sqrt(x * x + y * y + z * z);
 }
 
-static cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack) {
-  pack->medium_count = scene->medium_count + 1u;
-  if (pack->medium_count > 0xfffe)
-    return log_fail(log, CDL_BAD_INPUT, "%s: %u media are more than the 65533 that fit",
-                    scene->path, scene->medium_count);
-  pack->media = pack_array(log, "media", pack->medium_count, sizeof *pack->media);
-  if (!pack->media) return CDL_BAD_INPUT;
-  pack->media[CDL_MEDIUM_VACUUM].density = CDL_NONE;
-  for (uint32_t i = 0; i < scene->medium_count; i++) {
-    const cdl_SceneMedium *from = &scene->media[i];
-    cdl_Medium *to = &pack->media[i + 1]; /* 0 is vacuum */
-    memcpy(to->absorption, from->absorption, sizeof to->absorption);
-    memcpy(to->scattering, from->scattering, sizeof to->scattering);
-    memcpy(to->emission, from->emission, sizeof to->emission);
-    memcpy(to->g, from->phase.g, sizeof to->g);
-    memcpy(to->alpha, from->phase.alpha, sizeof to->alpha);
-    to->second = from->phase.second;
-    to->density = to->temperature = to->color = CDL_NONE;
-    to->emissive = from->emission[0] > 0 || from->emission[1] > 0 || from->emission[2] > 0;
-  }
-  pack->scene_medium = scene->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : scene->medium + 1u;
-  pack->features.media = scene->medium_count > 0;
-  return CDL_OK;
-}
-
 cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack) {
   double environment_power = 0.0;
   memset(pack, 0, sizeof *pack);
@@ -65,6 +40,7 @@ cdl_Status pack_scene(const cdl_Log *log, const cdl_Scene *scene, int bvh_width,
   if (!status) status = pack_materials(log, scene, pack);
   if (!status) status = pack_energy(log, pack);
   if (!status) status = pack_media(log, scene, pack);
+  if (!status) status = pack_grids(log, scene, pack);
   if (!status) status = pack_geometry(log, scene, bvh_width, pack);
   if (!status) status = pack_environment(log, scene, pack, &environment_power);
   if (!status) status = pack_lights(log, scene, environment_power, pack);
@@ -85,6 +61,12 @@ void pack_free(cdl_Pack *pack) {
   free(pack->environment);
   free(pack->environment_cells);
   free(pack->media);
+  free(pack->instance_media);
+  free(pack->grids);
+  free(pack->grid_table);
+  free(pack->grid_most);
+  free(pack->grid_values);
+  free(pack->blackbody);
   free(pack->energy_table);
   bvh_free(&pack->bvh);
   memset(pack, 0, sizeof *pack);

@@ -7,6 +7,7 @@
 #define CANDELA_SCENE_PACK_H
 
 #include "abi/geometry.h"
+#include "abi/grid.h"
 #include "abi/light.h"
 #include "abi/material.h"
 #include "abi/medium.h"
@@ -22,6 +23,7 @@ typedef struct cdl_PackFeatures {
   int opacity;  /* holes and half transparent surfaces among them */
   int motion;   /* things or cameras move while the shutter is open */
   int media;    /* any medium that is not vacuum */
+  int grids;    /* and with a density that a grid gives */
   int triangle_lights, punctual_lights, environment;
   uint32_t gltf_layers; /* CDL_GLTF_LAYER_* */
   int dispersion;       /* glass that disperses */
@@ -44,10 +46,15 @@ typedef struct cdl_Pack {
   float *environment; /* RGB and a pad for each texel */
   cdl_AliasEntry *environment_cells;
   cdl_Medium *media;
+  uint32_t *instance_media; /* of each instance of the scene: what its closed surface holds */
+  cdl_Grid *grids;
+  uint32_t *grid_table;
+  float *grid_most, *grid_values;
+  float *blackbody;    /* abi/grid.h; zeros unless a grid gives a temperature */
   float *energy_table; /* bsdf/energy.h; NULL unless features.energy_compensation */
   size_t triangle_count, shape_count, attribute_count, material_count, param_texture_count,
       texture_count, texel_count, light_count, environment_count, cell_count, medium_count,
-      energy_count;
+      grid_count, grid_entries, grid_most_count, grid_value_count, blackbody_count, energy_count;
   uint32_t scene_medium;
   uint32_t motion_keys;  /* times at which moving things are known; below 2: nothing moves */
   uint32_t camera_keys;  /* where in the attributes the cameras' matrices at those times begin */

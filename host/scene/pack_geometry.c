@@ -176,17 +176,26 @@ static cdl_Status bake_instance(Geometry *g, uint32_t number) {
   if (keys > 1) bake_later(g, number, &g->pack->shapes[index]);
   note_instance(g, mesh, keys > 1, &first_light);
   g->pack->shapes[index].first_light = first_light;
+  g->pack->shapes[index].medium = g->pack->instance_media[number];
   int group =
       material_passable(&g->pack->materials[mesh->material]) ? BAKED_PASSABLE : BAKED_OPAQUE;
   g->baked[group][g->baked_count[group]++] = g->parts[index];
   return CDL_OK;
 }
 
-static cdl_Status place_instance(Geometry *g, const cdl_SceneInstance *instance) {
+/* What a shape of several instances holds, unless a grid makes that differ among them. */
+static uint32_t shared_medium(const Geometry *g, uint32_t number) {
+  uint32_t medium = g->pack->instance_media[number];
+  return g->pack->media[medium].density == CDL_NONE ? medium : CDL_NONE;
+}
+
+static cdl_Status place_instance(Geometry *g, uint32_t number) {
+  const cdl_SceneInstance *instance = &g->scene->instances[number];
   const cdl_SceneMesh *mesh = &g->scene->meshes[instance->mesh];
   if (g->mesh_number[instance->mesh] == CDL_NONE) {
     uint32_t shape = (uint32_t)g->pack->shape_count;
     if (add_shape(g, mesh, NULL, CDL_NONE, 1)) return CDL_BAD_INPUT;
+    g->pack->shapes[shape].medium = shared_medium(g, number);
     g->mesh_number[instance->mesh] = g->mesh_count;
     g->pack->mesh_shapes[g->mesh_count] = shape;
     g->meshes[g->mesh_count++] = (cdl_BvhMesh){&g->parts[shape], 1};
@@ -197,6 +206,7 @@ static cdl_Status place_instance(Geometry *g, const cdl_SceneInstance *instance)
   placement->mask =
       material_passable(&g->pack->materials[mesh->material]) ? CDL_MASK_PASSABLE : CDL_MASK_OPAQUE;
   placement->object = instance->object;
+  placement->medium = g->pack->instance_media[number];
   note_instance(g, mesh, 0, &placement->first_light);
   return CDL_OK;
 }
@@ -320,7 +330,7 @@ cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_wid
   for (uint32_t i = 0; !status && i < scene->instance_count; i++) {
     const cdl_SceneInstance *instance = &scene->instances[i];
     int alone = g.moves[i] || g.uses[instance->mesh] == 1;
-    status = alone ? bake_instance(&g, i) : place_instance(&g, instance);
+    status = alone ? bake_instance(&g, i) : place_instance(&g, i);
   }
   if (!status) {
     if (g.keys > 1) append_cameras(&g);

@@ -165,7 +165,6 @@ static void pack_param_texture(const cdl_SceneParamTexture *from, cdl_ParamTextu
 static void pack_material(const cdl_SceneMaterial *from, cdl_Pack *pack, cdl_Material *to) {
   to->model = from->model;
   to->flags = material_flags(from);
-  to->medium = from->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : from->medium + 1u;
   to->alpha_cutoff = from->alpha_cutoff;
   memcpy(to->base, from->base, sizeof to->base);
   memcpy(to->emission, from->emission, sizeof to->emission);

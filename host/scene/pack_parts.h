@@ -24,6 +24,10 @@ cdl_Status pack_energy(const cdl_Log *log, cdl_Pack *pack);
 void pack_energy_metal(uint32_t kind, float *all);
 void pack_energy_glass(uint32_t kind, float *all);
 
+/* Also says what each instance holds: a grid makes another medium of every node it is placed by. */
+cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
+cdl_Status pack_grids(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack);
+
 /* Also numbers the lights of emissive shapes and builds the trees. */
 cdl_Status pack_geometry(const cdl_Log *log, const cdl_Scene *scene, int bvh_width, cdl_Pack *pack);
 

@@ -76,7 +76,8 @@ typedef struct cdl_BvhInstance {
   uint mesh;
   uint object;      /* of the scene: node number */
   uint first_light; /* light of the mesh's first triangle; CDL_NONE: no lights */
-  uint pad[6];
+  uint medium;      /* what the mesh holds, where its shape does not say it */
+  uint pad[5];
 } cdl_BvhInstance;
 CDL_ABI_SIZE(cdl_BvhInstance, 192);
 

@@ -28,7 +28,7 @@ typedef struct cdl_Shape {
   uint uv[2];       /* 2 floats a vertex */
   uint colors;      /* 4 floats a vertex: linear RGB and opacity */
   uint key_stride;  /* vertices from one key of its motion to the next; 0: it stands still */
-  uint pad;
+  uint medium; /* what it holds when closed: index into the media; CDL_NONE: the instance says it */
 } cdl_Shape;
 CDL_ABI_SIZE(cdl_Shape, 48);
 

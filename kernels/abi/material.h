@@ -48,7 +48,7 @@
 #define CDL_MATERIAL_SEPARABLE 8u /* masking; else correlated by height */
 #define CDL_MATERIAL_MASK 16u     /* opacity below the cutoff is a hole */
 #define CDL_MATERIAL_BLEND 32u    /* opacity is a probability */
-#define CDL_MATERIAL_BOUNDARY 64u /* going through it means entering or leaving `medium` */
+#define CDL_MATERIAL_BOUNDARY 64u /* going through it means entering or leaving what it holds */
 #define CDL_MATERIAL_THIN 128u    /* a sheet: what goes in comes out on the other side */
 #define CDL_MATERIAL_ENERGY_COMPENSATED 256u
 #define CDL_MATERIAL_NORMAL_MAPPED 512u /* and nothing goes through */
@@ -77,8 +77,8 @@ CDL_ABI_SIZE(cdl_ParamTexture, 64);
 typedef struct cdl_Material {
   uint model;
   uint flags;
-  uint medium; /* what a closed surface holds: index into the media; 0 is vacuum */
   float alpha_cutoff;
+  uint pad;
   float base[4]; /* base colour, reflectance or transmittance; opacity */
   float emission[3];
   float normal_scale;

@@ -7,6 +7,7 @@
 #include "bvh/hit.h"
 #include "lib/material.h"
 #include "lib/motion.h"
+#include "lib/surface.h"
 #include "lib/transform.h"
 #include "media/stack.h"
 
@@ -42,13 +43,14 @@ CDL_INLINE int hit_repeats(Hit hit, Hit last, vec3 direction,
          hit_enters(last, direction, instances, triangles, shapes, attributes CDL_TIME(time));
 }
 
-CDL_INLINE MediaStack hit_crossed(Hit hit, MediaStack stack, vec3 direction, uint medium,
+CDL_INLINE MediaStack hit_crossed(Hit hit, MediaStack stack, vec3 direction,
                                   CDL_GLOBAL const cdl_BvhInstance *instances,
                                   CDL_GLOBAL const cdl_Triangle *triangles,
                                   CDL_GLOBAL const cdl_Shape *shapes,
                                   CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
   int enters = hit_enters(hit, direction, instances, triangles, shapes, attributes CDL_TIME(time));
-  return media_crossed(stack, medium, enters);
+  CDL_GLOBAL const cdl_Shape *shape = shapes + triangles[hit.primitive].shape;
+  return media_crossed(stack, surface_medium(shape, instances + hit.instance), enters);
 }
 
 #endif

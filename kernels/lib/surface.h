@@ -78,4 +78,15 @@ CDL_INLINE vec3 surface_face_path(vec3 normal, vec3 wo) {
   return v3_normalize(v3_madd(normal, bend, wo));
 }
 
+/* The medium behind a surface. */
+CDL_INLINE uint surface_medium(CDL_GLOBAL const cdl_Shape *shape,
+                               CDL_GLOBAL const cdl_BvhInstance *instance) {
+#ifdef CDL_GRIDS
+  return shape->medium != CDL_NONE ? shape->medium : instance->medium;
+#else
+  (void)instance;
+  return shape->medium;
+#endif
+}
+
 #endif

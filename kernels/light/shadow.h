@@ -9,6 +9,7 @@
 #include "lib/passable.h"
 #include "media/homogeneous.h"
 #include "media/stack.h"
+#include "media/tracking.h"
 
 typedef struct ShadowRay {
   vec3 origin;
@@ -59,11 +60,20 @@ CDL_INLINE float surface_transmittance(Hit hit, CDL_SURFACE_ARGS) {
   return 1.0f - material_opacity(material, base.a);
 }
 
-CDL_INLINE vec3 medium_transmittance(CDL_GLOBAL const cdl_Medium *medium, float distance) {
+/* What arrives of `light` over the part of the ray from `from` to `to` metres inside the medium. */
+CDL_INLINE vec3 medium_transmit(vec3 light, CDL_GLOBAL const cdl_Medium *medium, ShadowRay ray,
+                                float from, float to, RandomStream *random CDL_GRID_PARAM) {
+#ifdef CDL_GRIDS
+  if (medium->density != CDL_NONE)
+    return grid_transmit(light, medium, ray.origin, ray.direction, from, to, random CDL_GRID);
+#else
+  (void)ray;
+  (void)random;
+#endif
   vec3 extinction = v3(medium->absorption[0] + medium->scattering[0],
                        medium->absorption[1] + medium->scattering[1],
                        medium->absorption[2] + medium->scattering[2]);
-  return homogeneous_transmittance(extinction, distance);
+  return v3_mul(light, homogeneous_transmittance(extinction, to - from));
 }
 
 /* What arrives of `radiance` on a ray that nothing opaque stops and that begins inside the media of
@@ -71,7 +81,8 @@ CDL_INLINE vec3 medium_transmittance(CDL_GLOBAL const cdl_Medium *medium, float 
 CDL_INLINE vec3 shadow_filter(vec3 radiance, ShadowRay ray, MediaStack stack, uint outside,
                               uint limit, CDL_GLOBAL const BvhNode *nodes,
                               CDL_GLOBAL const BvhTriangle *bvh_triangles, uint root,
-                              CDL_GLOBAL const cdl_Medium *media, CDL_SURFACE_ARGS CDL_TIME_PARAM) {
+                              CDL_GLOBAL const cdl_Medium *media, RandomStream random,
+                              CDL_SURFACE_ARGS CDL_TIME_PARAM CDL_GRID_PARAM) {
   Hit last = hit_none(0.0f);
   for (uint passed = 0; passed < limit && v3_max(radiance) > 0.0f; passed++) {
     Hit hit = hit_none(0.0f);
@@ -81,9 +92,8 @@ CDL_INLINE vec3 shadow_filter(vec3 radiance, ShadowRay ray, MediaStack stack, ui
 #endif
     int arrived = !hit_is_some(hit);
 #ifdef CDL_MEDIA
-    float segment = (arrived ? ray.distance : hit.t) - last.t;
-    radiance =
-        v3_mul(radiance, medium_transmittance(media + media_current(stack, outside), segment));
+    radiance = medium_transmit(radiance, media + media_current(stack, outside), ray, last.t,
+                               arrived ? ray.distance : hit.t, &random CDL_GRID);
 #endif
     if (arrived) return radiance;
     CDL_GLOBAL const cdl_Material *material =
@@ -95,7 +105,7 @@ CDL_INLINE vec3 shadow_filter(vec3 radiance, ShadowRay ray, MediaStack stack, ui
                                             materials, textures, texels, srgb);
       radiance = v3_scale(radiance, repeated ? 1.0f : through);
     } else if (!repeated) {
-      stack = hit_crossed(hit, stack, ray.direction, material->medium, instances, triangles, shapes,
+      stack = hit_crossed(hit, stack, ray.direction, instances, triangles, shapes,
                           attributes CDL_TIME(time));
     }
     last = hit;

@@ -29,7 +29,7 @@ CDL_FUNCTION MediaStack media_walk(MediaStack stack, vec3 origin, vec3 direction
      * closed. */
     int boundary = (material->flags & CDL_MATERIAL_BOUNDARY) != 0u;
     if (boundary && !repeated)
-      stack = hit_crossed(hit, stack, direction, material->medium, instances, triangles, shapes,
+      stack = hit_crossed(hit, stack, direction, instances, triangles, shapes,
                           attributes CDL_TIME(time));
     last = hit;
   }

@@ -15,6 +15,8 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
                       CDL_GLOBAL const float *attributes, CDL_GLOBAL const cdl_Material *materials,
                       CDL_GLOBAL const cdl_Texture *textures, CDL_GLOBAL const uint *texels,
                       CDL_GLOBAL const float *srgb, CDL_GLOBAL const cdl_Medium *media,
+                      CDL_GLOBAL const cdl_Grid *grids, CDL_GLOBAL const uint *grid_table,
+                      CDL_GLOBAL const float *grid_most, CDL_GLOBAL const float *grid_values,
                       CDL_GLOBAL const uint *path, CDL_GLOBAL const uint *work,
                       CDL_GLOBAL uint *slots) {
   size_t i = get_global_id(0);
@@ -32,12 +34,15 @@ __kernel void occlude(CDL_CONSTANT cdl_Params *restrict params,
                    ray.direction, ray.reach, CDL_MASK_OPAQUE CDL_TIME(time)))
     return;
 #if defined(CDL_MEDIA) || defined(CDL_PASSABLE)
-  MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
-                                state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
+  MediaStack stack = media_make(state_uint(work, CDL_WORK_SHADOW_MEDIA, stride, i),
+                                state_uint(work, CDL_WORK_SHADOW_MEDIA + 1, stride, i));
+  PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
+  uint vertex = counts_vertex(state_uint(path, CDL_PATH_COUNTS, stride, i));
+  RandomStream stream = random_stream(random.key, random.sample, vertex, CDL_STREAM_SHADOW);
   radiance =
       shadow_filter(radiance, ray, stack, params->scene_medium, params->pass_limit, bvh_nodes,
-                    bvh_triangles, params->top_root, media, bvh_instances, triangles, shapes,
-                    attributes, materials, textures, texels, srgb CDL_TIME(time));
+                    bvh_triangles, params->top_root, media, stream, bvh_instances, triangles,
+                    shapes, attributes, materials, textures, texels, srgb CDL_TIME(time) CDL_GRID);
 #endif
   state_add_radiance(slots, wave->slots, state_uint(path, CDL_PATH_SLOT, stride, i), radiance);
 }

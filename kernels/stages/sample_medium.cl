@@ -1,5 +1,5 @@
-/* sample_medium: the free flight of paths inside a medium: how far light goes before it is
- * scattered, what is absorbed on the way, and what the medium emits. */
+/* sample_medium: the free flight of paths inside a medium that is the same everywhere: how far light
+ * goes before it is scattered, what is absorbed on the way, and what the medium emits. */
 #include "lib/stage.h"
 
 #include "lib/dimensions.h"
@@ -14,11 +14,12 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
   CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
-    int alive = queue != CDL_QUEUE_DEAD;
+    int living = queue != CDL_QUEUE_DEAD;
     MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
     uint current = media_current(stack, params->scene_medium);
-    CDL_GLOBAL const cdl_Medium *medium = media + (alive ? current : CDL_MEDIUM_VACUUM);
+    CDL_GLOBAL const cdl_Medium *medium = media + (living ? current : CDL_MEDIUM_VACUUM);
+    int alive = living & (medium->density == CDL_NONE);
     vec3 absorption = v3(medium->absorption[0], medium->absorption[1], medium->absorption[2]);
     vec3 scattering = v3(medium->scattering[0], medium->scattering[1], medium->scattering[2]);
     vec3 emission = v3(medium->emission[0], medium->emission[1], medium->emission[2]);

@@ -61,7 +61,8 @@ __kernel void surface(CDL_CONSTANT cdl_Params *restrict params,
     state_set_vec3(work, CDL_WORK_NORMAL, stride, i, normal);
     state_set_vec3(work, CDL_WORK_TANGENT, stride, i, frame_from_tangent(normal, point.tangent).x);
     state_set_uint(work, CDL_WORK_MATERIAL, stride, i, material_index);
-    state_set_uint(work, CDL_WORK_MEDIUM, stride, i, material->medium);
+    state_set_uint(work, CDL_WORK_MEDIUM, stride, i,
+                   surface_medium(shape, bvh_instances + instance_index));
     state_set_vec3(work, CDL_WORK_BASE, stride, i, v3(base.r, base.g, base.b));
     state_set_uint(work, CDL_WORK_VERTEX, stride, i, vertex);
   }

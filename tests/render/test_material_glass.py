@@ -256,6 +256,19 @@ def test_suns_behind_glass():
     same_light("a directional light as a texel", pictures, cells, [name for name, _ in thin])
 
 
+def test_light_outside_from_within():
+    """A shadow ray that leaves rough glass is in what is outside, where the path stays within: an
+    interior that absorbs nothing that could be seen, in red alone, leaves red like green."""
+    s = Scene()
+    s.add(sphere(0.8, (0, 0, 0), 24, 12, smooth=True),
+          s.material(cdl={"model": "dielectric", "ior": 1.5, "alpha": 0.4},
+                     medium={"absorption": [1e-9, 0, 0]}))
+    s.environment(radiance=1)
+    s.camera(look_at((0, 0, 3), (0, 0, 0)), yfov=30)
+    mean = render(s, (32, 32), 64, 8).rgb.reshape(-1, 3).mean(0)
+    near("red beside green through rough glass", mean[0] / mean[1], 1, 1e-4)
+
+
 def test_layered_dispersion_alone():
     """KHR_materials_dispersion of rough glass needs no other dispersive material in the scene."""
     films = []
@@ -274,4 +287,5 @@ def test_layered_dispersion_alone():
 
 if __name__ == "__main__":
     main(test_prisms, test_thin_sheets, test_interiors, test_plastic, test_lamps_behind_glass,
-         test_suns_behind_glass, test_layered_dispersion_alone)
+         test_suns_behind_glass, test_light_outside_from_within,
+         test_layered_dispersion_alone)
