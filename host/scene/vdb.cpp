@@ -22,7 +22,7 @@ namespace {
 /* Files before this version, of 2013, are laid out in other ways. */
 constexpr uint32_t oldest_version = 222;
 constexpr uint32_t most_grids = 4096, longest_name = 4096;
-constexpr int side = 8, leaf_size = side * side * side;
+constexpr int leaf_size = 512, farthest = 1 << 28;
 const char half_suffix[] = "_HalfFloat";
 
 struct Refused {
@@ -179,10 +179,13 @@ void put_transform(const openvdb::GridBase &grid, double to_world[12]) {
     for (int c = 0; c < 4; c++) to_world[4 * r + c] = matrix[c][r];
 }
 
+/* Goes through the nodes of a tree itself: the library's own iterators, and whatever makes a grid
+ * of a type known here, would be compiled anew for every type. */
 template <class Grid> class Sender {
 public:
   using Value = typename Grid::ValueType;
-  using Leaf = typename Grid::TreeType::LeafNodeType;
+  using Tree = typename Grid::TreeType;
+  using Leaf = typename Tree::LeafNodeType;
 
   Sender(const Grid &of, const VdbSink *to) : grid(of), sink(to) {}
 
@@ -191,46 +194,53 @@ public:
     float background[3];
     header.channels = Channels<Value>::count;
     put_transform(grid, header.to_world);
-    spread(grid.background(), background);
+    spread(grid.tree().root().background(), background);
     for (uint32_t c = 0; c < header.channels; c++)
       header.background = std::fmax(header.background, std::fabs((double)background[c]));
     survey(header);
     if (!sink->begin(sink->user, &header)) throw Stopped{};
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf)
-      if (!leaf->isEmpty()) send_leaf(*leaf);
-    each_tile([this](const openvdb::CoordBBox &box, const Value &value) { send_tile(box, value); });
+    visit(
+        grid.tree().root(), [this](const Leaf &leaf) { send_leaf(leaf); },
+        [this](const openvdb::Coord &at, uint32_t size, const Value &value) {
+          send_tile(at, size, value);
+        });
   }
 
 private:
   const Grid &grid;
   const VdbSink *sink;
 
-  /* Active values above the leaves. */
-  template <class Body> void each_tile(Body body) const {
-    auto tile = grid.tree().cbeginValueOn();
-    tile.setMaxDepth(Grid::TreeType::ValueOnCIter::LEAF_DEPTH - 1);
-    for (; tile; ++tile) {
-      openvdb::CoordBBox box;
-      tile.getBoundingBox(box);
-      body(box, *tile);
-    }
+  /* Leaves with active voxels, and active tiles. */
+  template <class Node, class OfLeaf, class OfTile>
+  static void visit(const Node &node, const OfLeaf &of_leaf, const OfTile &of_tile) {
+    for (auto tile = node.cbeginValueOn(); tile; ++tile)
+      of_tile(tile.getCoord(), (uint32_t)Node::ChildNodeType::DIM, *tile);
+    for (auto child = node.cbeginChildOn(); child; ++child) visit(*child, of_leaf, of_tile);
+  }
+  template <class OfLeaf, class OfTile>
+  static void visit(const Leaf &leaf, const OfLeaf &of_leaf, const OfTile &) {
+    if (!leaf.isEmpty()) of_leaf(leaf);
   }
 
   void survey(VdbHeader &header) const {
     openvdb::CoordBBox all;
-    for (auto leaf = grid.tree().cbeginLeaf(); leaf; ++leaf) {
-      if (leaf->isEmpty()) continue;
-      openvdb::CoordBBox box;
-      leaf->evalActiveBoundingBox(box);
-      all.expand(box);
-      header.leaves++;
-      header.active += leaf->onVoxelCount();
-    }
-    each_tile([&](const openvdb::CoordBBox &box, const Value &) {
-      all.expand(box);
-      header.tiles++;
-      header.active += box.volume();
-    });
+    visit(
+        grid.tree().root(),
+        [&](const Leaf &leaf) {
+          openvdb::CoordBBox box;
+          leaf.evalActiveBoundingBox(box);
+          all.expand(box);
+          header.leaves++;
+          header.active += leaf.onVoxelCount();
+        },
+        [&](const openvdb::Coord &at, uint32_t size, const Value &) {
+          for (int k = 0; k < 3; k++)
+            if (at[k] < -farthest || at[k] > farthest)
+              throw Refused{"its voxels lie too far from its origin"};
+          all.expand(openvdb::CoordBBox::createCube(at, (int32_t)size));
+          header.tiles++;
+          header.active += (uint64_t)size * size * size;
+        });
     if (all.empty()) throw Refused{"it has no active voxels"};
     for (int k = 0; k < 3; k++) {
       header.low[k] = all.min()[k];
@@ -239,7 +249,7 @@ private:
   }
 
   /* The library stores z fastest. */
-  void send_leaf(const Leaf &leaf) {
+  void send_leaf(const Leaf &leaf) const {
     float values[3 * leaf_size] = {};
     const Value *from = leaf.buffer().data();
     for (auto on = leaf.cbeginValueOn(); on; ++on) {
@@ -247,25 +257,34 @@ private:
       for (uint32_t c = 0; c < Channels<Value>::count; c++)
         values[c * leaf_size + to] = Channels<Value>::get(from[at], c);
     }
-    const openvdb::Coord origin = leaf.origin();
-    if (!sink->leaf(sink->user, origin.data(), values)) throw Stopped{};
+    if (!sink->leaf(sink->user, leaf.origin().data(), values)) throw Stopped{};
   }
 
-  void send_tile(const openvdb::CoordBBox &box, const Value &value) {
+  void send_tile(const openvdb::Coord &at, uint32_t size, const Value &value) const {
     float values[3];
     spread(value, values);
-    if (!sink->tile(sink->user, box.min().data(), (uint32_t)box.dim()[0], values)) throw Stopped{};
+    if (!sink->tile(sink->user, at.data(), size, values)) throw Stopped{};
   }
 };
 
-/* Reads the grid if it is of this type. */
-template <class Grid> bool read_as(Archive &archive, const Entry &entry, const VdbSink *sink) {
-  if (entry.type != Grid::gridType()) return false;
-  typename Grid::Ptr grid = Grid::create();
-  archive.read(entry, *grid);
-  Sender<Grid>(*grid, sink).send();
-  return true;
+/* A type of grid by the name that files give it. */
+struct Type {
+  const char *name;
+  void (*send)(const openvdb::GridBase &grid, const VdbSink *sink);
+};
+
+template <class Grid> void send_as(const openvdb::GridBase &grid, const VdbSink *sink) {
+  Sender<Grid>(static_cast<const Grid &>(grid), sink).send();
 }
+
+const Type types[] = {
+    {"Tree_float_5_4_3", send_as<openvdb::FloatGrid>},
+    {"Tree_double_5_4_3", send_as<openvdb::DoubleGrid>},
+    {"Tree_int32_5_4_3", send_as<openvdb::Int32Grid>},
+    {"Tree_int64_5_4_3", send_as<openvdb::Int64Grid>},
+    {"Tree_vec3s_5_4_3", send_as<openvdb::Vec3SGrid>},
+    {"Tree_vec3d_5_4_3", send_as<openvdb::Vec3DGrid>},
+};
 
 void read_grid(const uint8_t *data, size_t size, const char *name, const VdbSink *sink) {
   Archive archive(data, size);
@@ -273,13 +292,13 @@ void read_grid(const uint8_t *data, size_t size, const char *name, const VdbSink
   if (!entry.parent.empty())
     throw Refused{"it shares the voxels of the grid " + entry.parent +
                   "; save it without instancing"};
-  if (!read_as<openvdb::FloatGrid>(archive, entry, sink) &&
-      !read_as<openvdb::DoubleGrid>(archive, entry, sink) &&
-      !read_as<openvdb::Int32Grid>(archive, entry, sink) &&
-      !read_as<openvdb::Int64Grid>(archive, entry, sink) &&
-      !read_as<openvdb::Vec3SGrid>(archive, entry, sink) &&
-      !read_as<openvdb::Vec3DGrid>(archive, entry, sink))
-    throw Refused{"its type is " + entry.type + ", which is not supported: use float or vec3s"};
+  for (const Type &type : types) {
+    if (entry.type != type.name) continue;
+    openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.type);
+    archive.read(entry, *grid);
+    return type.send(*grid, sink);
+  }
+  throw Refused{"its type is " + entry.type + ", which is not supported: use float or vec3s"};
 }
 
 } // namespace
