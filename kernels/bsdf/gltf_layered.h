@@ -1,8 +1,8 @@
 /* gltf_layered.h: glTF 2.0 metallic-roughness with the layers and lobes of KHR_materials_*:
  *
  *   coat over sheen over mix(dielectric, metal, metallic)
- *   dielectric = F specular + (1 - max F) mix(scattered, base specular transmission, transmission)
- *   scattered  = mix(base / pi, tint / pi on the far side, diffuse_transmission)
+ *   dielectric = F specular + mix(scattered, (1 - max F) base specular transmission, transmission)
+ *   scattered  = what specular leaves of mix(base / pi, tint / pi beyond, diffuse_transmission)
  *
  * Each lobe is compiled only where CDL_GLTF_CLEARCOAT, _SHEEN, _IRIDESCENCE, _ANISOTROPY,
  * _TRANSMISSION, _DIFFUSE_TRANSMISSION, _RETROREFLECTION or _DISPERSION is defined; with none it is
@@ -10,9 +10,10 @@
  * alpha = roughness^2, separable masking.
  *
  * Where the extensions leave a choice or break reciprocity or energy, this is what was chosen.
- * - The diffuse part keeps the core's 1 - F(wo.h), by which white returns more than it gets at
- *   grazing angles: up to 1.9 times at cos 0.01 (gltf.h has more figures). All lobes added here
- * keep to 1 by themselves, and layers on top never raise that figure.
+ * - All lobes keep to 1 together. What is diffuse gets what the specular lobe leaves in all, of the
+ *   channel where that is least: see gltf_albedo.h. With a film, the two boundaries count with all
+ *   that interference may add at any thickness; inside of a volume, what a smooth boundary lets
+ *   pass at a cosine lessened by roughness.
  * - Coat and sheen scale what is below by one symmetric factor, 1 - max(share of wo, of wi): see
  *   clearcoat.h and sheen.h.
  * - Specular transmission takes the same facets as reflection, so that both keep to 1 together.
@@ -39,17 +40,18 @@ typedef struct GltfChoice {
   float coat, sheen, retro, facets, diffuse; /* the rest is diffuse transmission */
   float through;
   float reflected; /* of `facets` on a smooth surface; else by half vector */
+  float left;      /* of what is diffuse for wo, over its mean: see gltf_albedo.h */
 } GltfChoice;
 
 /* Into and out of the frame along the direction of anisotropy. */
 CDL_INLINE vec3 gltf_turn(GltfLayeredParams p, vec3 w) {
   float x = fma(p.direction_x, w.x, p.direction_y * w.y);
-  return v3(x, fma(p.direction_x, math_after(x, w.y), -(p.direction_y * w.x)), w.z);
+  return v3(x, fma(p.direction_x, w.y, -(p.direction_y * w.x)), w.z);
 }
 
 CDL_INLINE vec3 gltf_turn_back(GltfLayeredParams p, vec3 w) {
   float x = fma(p.direction_x, w.x, -(p.direction_y * w.y));
-  return v3(x, fma(p.direction_x, math_after(x, w.y), p.direction_y * w.x), w.z);
+  return v3(x, fma(p.direction_x, w.y, p.direction_y * w.x), w.z);
 }
 
 CDL_INLINE vec3 gltf_fold(vec3 w) { return v3(w.x, w.y, math_abs(w.z)); }
@@ -76,7 +78,6 @@ CDL_INLINE GltfCover gltf_cover(GltfLayeredParams p, vec3 wo, vec3 wi, vec3 coat
   int outer_i = p.solid ? p.outside == (wi.z > 0.0f) : 1;
   if (GLTF_CLEARCOAT) {
     float fresnel_o = clearcoat_fresnel(p.coat, v3_dot(wo, coat_normal));
-    wi = v3_scale(wi, math_after(fresnel_o, 1.0f));
     float fresnel_i = clearcoat_fresnel(p.coat, v3_dot(wi, coat_normal));
     cover.coat_o = p.outside ? fresnel_o : 0.0f;
     fresnel_i = outer_i ? fresnel_i : 0.0f;
@@ -86,7 +87,7 @@ CDL_INLINE GltfCover gltf_cover(GltfLayeredParams p, vec3 wo, vec3 wi, vec3 coat
   if (GLTF_SHEEN) {
     float strength = v3_max(p.sheen_color);
     float albedo_o = sheen_albedo(p.sheen, wo.z);
-    float albedo_i = sheen_albedo(p.sheen, math_abs(math_after(albedo_o, wi.z)));
+    float albedo_i = sheen_albedo(p.sheen, math_abs(wi.z));
     albedo_o = p.outside ? albedo_o : 0.0f;
     float greater = math_max(albedo_o, outer_i ? albedo_i : 0.0f);
     cover.divisor = math_max(greater, 1.0f);
@@ -102,24 +103,37 @@ CDL_INLINE Frame gltf_coat_frame(GltfLayeredParams p, vec3 wo) {
   return GLTF_CLEARCOAT ? clearcoat_frame(p.coat_normal, wo) : none;
 }
 
-/* By estimates of the lobes' albedos. The diffuse part's does not shrink at grazing angles, as the
- * part itself does not; nor does any vanish that other facets than the mean one may have. */
+/* What the specular lobe returns at most, by channel, but for a film on metal. */
+CDL_INLINE float gltf_specular_share(GltfLayeredParams p, GltfAlbedo albedo, float left) {
+  float metal = gltf_reflected(albedo, v3_max(p.base), 1.0f);
+  metal = GLTF_IRIDESCENCE ? math_lerp(metal, albedo.white, p.film) : metal;
+  return math_lerp(1.0f - left, metal, p.metallic);
+}
+
+/* By the lobes' albedos; none vanishes that an estimate may miss. */
 CDL_INLINE GltfChoice gltf_choose(GltfLayeredParams p, vec3 wo) {
   GltfChoice choice;
-  GltfFacet facet = gltf_facet(p, wo.z);
+  GltfAlbedo albedo = gltf_layered_albedo(p, gltf_turn(p, wo));
+  float left = gltf_layered_left(p, albedo);
   GltfCover cover = gltf_cover(p, wo, wo, gltf_coat_frame(p, wo).z);
   float cover_o = (1.0f - cover.coat_o) * (1.0f - cover.sheen_o);
   float rest = cover_o * (1.0f - p.metallic);
-  float scattered = rest * (1.0f - p.transmission) * math_max(1.0f - v3_max(p.f0), 0.02f);
-  float specular = cover_o * math_max(v3_max(facet.specular), 0.01f);
-  float passed = math_max(cover_o * facet.rest, 0.2f * rest) * p.transmission;
+  float scattered = rest * (1.0f - p.transmission) * math_max(left, 0.02f);
+  float specular = cover_o * math_max(gltf_specular_share(p, albedo, left), 0.01f);
+  float passed = 0.0f;
+  choice.reflected = 1.0f;
+  if (GLTF_TRANSMISSION) {
+    GltfFacet facet = gltf_facet(p, wo.z);
+    passed = math_max(cover_o * facet.rest, 0.2f * rest) * p.transmission;
+    choice.reflected = math_max(gltf_reflected_share(p, facet), 0.01f);
+  }
+  choice.left = (1.0f - p.metallic) * left / gltf_layered_left_mean(p);
   choice.coat = cover.coat_o;
   choice.sheen = (1.0f - cover.coat_o) * cover.sheen_o;
   choice.retro = specular * p.retroreflection;
   choice.facets = fma(specular, 1.0f - p.retroreflection, passed * v3_max(p.base));
   choice.diffuse = scattered * (1.0f - p.diffuse_transmission) * v3_max(p.base);
   choice.through = scattered * p.diffuse_transmission * v3_max(p.diffuse_tint);
-  choice.reflected = math_max(gltf_reflected_share(p, facet), 0.01f);
   float sum =
       choice.coat + choice.sheen + choice.retro + choice.facets + choice.diffuse + choice.through;
   float scale = 1.0f / (sum > 0.0f ? sum : 1.0f);
@@ -146,14 +160,11 @@ CDL_INLINE GltfRefraction gltf_refraction(GltfLayeredParams p, vec3 wo, vec3 wi)
   vec3 sum = v3_normalize(v3_madd(wo, p.eta, wi));
   vec3 h = v3_scale(sum, sum.z < 0.0f ? -1.0f : 1.0f);
   float cos_o = v3_dot(wo, h);
-  float cos_i = -v3_dot(v3_scale(wi, math_after(cos_o, 1.0f)), h);
+  float cos_i = -v3_dot(wi, h);
   int refracts = cos_o > 0.0f && cos_i > 0.0f && wi.z < 0.0f;
   float d = microfacet_density(p.surface, h);
-  Microfacets m = p.surface;
-  m.alpha_x = math_after(d, m.alpha_x);
-  float g_o = 1.0f / (1.0f + microfacet_lambda(m, wo));
-  m.alpha_x = math_after(g_o, m.alpha_x);
-  float g_i = 1.0f / (1.0f + microfacet_lambda(m, gltf_fold(wi)));
+  float g_o = 1.0f / (1.0f + microfacet_lambda(p.surface, wo));
+  float g_i = 1.0f / (1.0f + microfacet_lambda(p.surface, gltf_fold(wi)));
   float visible = microfacet_visible_density(d, g_o, cos_o, math_max(wo.z, 1e-9f));
   float denominator = math_max(math_sqr(fma(-p.eta, cos_i, cos_o)), 1e-20f);
   float jacobian = p.eta * p.eta * cos_i / denominator;
@@ -182,7 +193,7 @@ CDL_INLINE BsdfValue gltf_cover_value(GltfLayeredParams p, GltfChoice choice, ve
   }
   if (GLTF_CLEARCOAT) {
     vec3 coat_o = frame_to_local(frame, wo);
-    vec3 coat_i = frame_to_local(frame, v3_scale(wi, math_after(value.pdf, 1.0f)));
+    vec3 coat_i = frame_to_local(frame, wi);
     MicrofacetLobe lobe = microfacet_evaluate(p.coat_surface, coat_o, coat_i);
     value.f_cos = v3_add(value.f_cos, v3_all(above * cover.lesser * lobe.f_cos));
     value.pdf = fma(above * choice.coat, lobe.bounded_pdf, value.pdf);
@@ -190,13 +201,12 @@ CDL_INLINE BsdfValue gltf_cover_value(GltfLayeredParams p, GltfChoice choice, ve
   return value;
 }
 
-/* The specular lobe turned back to wo: adds to it, its density and what is left to scatter. */
+/* The specular lobe turned back to wo: adds to it and its density. */
 CDL_INLINE void gltf_add_retro(GltfLayeredParams p, GltfChoice choice, vec3 wo, vec3 wi,
-                               vec3 *specular, float *diffuse, float *pdf) {
+                               vec3 *specular, float *pdf) {
   MicrofacetLobe lobe = microfacet_evaluate(p.surface, bsdf_mirror(wo), wi);
   GltfFacet facet = gltf_facet(p, lobe.cos_h);
   *specular = v3_madd(*specular, p.retroreflection * lobe.f_cos, facet.specular);
-  *diffuse = fma(p.retroreflection, facet.rest, *diffuse);
   *pdf = fma(choice.retro, lobe.bounded_pdf, *pdf);
 }
 
@@ -224,26 +234,24 @@ CDL_INLINE BsdfValue gltf_base_value(GltfLayeredParams p, GltfChoice choice, vec
   int above = wi.z > 0.0f;
   vec3 up = gltf_fold(wi);
   vec3 along_o = gltf_turn(p, wo);
-  vec3 along_i = gltf_turn(p, v3_scale(up, math_after(along_o.y, 1.0f)));
+  vec3 along_i = gltf_turn(p, up);
   MicrofacetLobe lobe = microfacet_evaluate(p.surface, along_o, along_i);
   GltfFacet facet = gltf_facet(p, lobe.cos_h);
   float regular = 1.0f - p.retroreflection;
   float share = p.smooth ? choice.reflected : gltf_reflected_share(p, facet);
   float lobe_pdf = p.transmission > 0.0f ? share * lobe.pdf : lobe.bounded_pdf;
   vec3 specular = v3_scale(facet.specular, regular * lobe.f_cos);
-  float diffuse = regular * facet.rest;
   float cosine = up.z * CDL_INV_PI;
   float pdf = fma(choice.facets, lobe_pdf, choice.diffuse * cosine);
-  along_i = v3_scale(along_i, math_after(pdf, 1.0f));
-  if (GLTF_RETROREFLECTION) gltf_add_retro(p, choice, along_o, along_i, &specular, &diffuse, &pdf);
-  float scattered = diffuse * cosine * (1.0f - p.transmission);
+  if (GLTF_RETROREFLECTION) gltf_add_retro(p, choice, along_o, along_i, &specular, &pdf);
+  float left = gltf_layered_left(p, gltf_layered_albedo(p, along_i));
+  float scattered = choice.left * left * cosine * (1.0f - p.transmission);
   vec3 f_cos = v3_madd(specular, scattered * (1.0f - p.diffuse_transmission), p.base);
   f_cos = v3_mul(f_cos, v3_select(p.outside, v3_all(1.0f), p.channels));
   BsdfValue passed = bsdf_black();
   if (GLTF_TRANSMITS) {
     vec3 tint = v3_scale(p.diffuse_tint, p.diffuse_transmission);
     passed = bsdf_value(v3_scale(tint, scattered), choice.through * cosine);
-    along_i = v3_scale(along_i, math_after(passed.pdf, 1.0f));
     passed = gltf_passed(p, choice, along_o, along_i, lobe, passed);
   }
   return bsdf_value(v3_select(above, f_cos, passed.f_cos), above ? pdf : passed.pdf);
@@ -288,7 +296,7 @@ CDL_INLINE GltfFacetSample gltf_sample_facets(GltfLayeredParams p, GltfChoice ch
   if (GLTF_CLEARCOAT) {
     view = v3_select(coated, frame_to_local(coat, wo), view);
     m.alpha_x = coated ? p.coat_surface.alpha_x : m.alpha_x;
-    m.alpha_y = coated ? math_after(m.alpha_x, p.coat_surface.alpha_y) : m.alpha_y;
+    m.alpha_y = coated ? p.coat_surface.alpha_y : m.alpha_y;
   }
   int whole = !coated && !retro && p.transmission > 0.0f;
   float bound = whole ? 1.0f : microfacet_bound(m, view);

@@ -6,7 +6,7 @@
 #include "bsdf/bsdf.h"
 #include "bsdf/clearcoat.h"
 #include "bsdf/dispersion.h"
-#include "bsdf/gltf.h"
+#include "bsdf/gltf_albedo.h"
 #include "bsdf/iridescence.h"
 #include "bsdf/microfacet.h"
 #include "bsdf/sheen.h"
@@ -112,13 +112,13 @@ CDL_INLINE void gltf_read_direction(GltfLayeredParams *p, int mirrored,
   float x = param_float(params, CDL_GLTF_LAYERED_ANISOTROPY_DIRECTION, stride, i);
   float y = param_float(params, CDL_GLTF_LAYERED_ANISOTROPY_DIRECTION + 1u, stride, i);
   float turned_x = fma(cosine, x, -(sine * y));
-  float turned_y = fma(sine, math_after(turned_x, x), cosine * y);
+  float turned_y = fma(sine, x, cosine * y);
   float length = sqrt(fma(turned_x, turned_x, turned_y * turned_y));
   int known = length > 1e-6f;
   float scale = 1.0f / (known ? length : 1.0f);
   p->direction_x = known ? turned_x * scale : 1.0f;
   scale = mirrored ? -scale : scale;
-  p->direction_y = known ? turned_y * math_after(p->direction_x, scale) : 0.0f;
+  p->direction_y = known ? turned_y * scale : 0.0f;
 }
 
 /* alpha along the direction of anisotropy is mix(alpha, 1, strength^2). */
@@ -133,8 +133,8 @@ CDL_INLINE void gltf_read_surface(GltfLayeredParams *p, int mirrored, CDL_GLOBAL
   p->direction_y = 0.0f;
   if (GLTF_ANISOTROPY) gltf_read_direction(p, mirrored, params, stride, i);
   p->smooth = along < GLTF_ALPHA_MIN;
-  p->surface = microfacet_surface(math_max(along, GLTF_ALPHA_MIN),
-                                  math_max(math_after(along, alpha), GLTF_ALPHA_MIN), 0, 1);
+  p->surface =
+      microfacet_surface(math_max(along, GLTF_ALPHA_MIN), math_max(alpha, GLTF_ALPHA_MIN), 0, 1);
 }
 
 CDL_INLINE void gltf_read_transmission(GltfLayeredParams *p, BsdfPoint point,
@@ -221,23 +221,110 @@ CDL_INLINE vec3 gltf_fresnel_at(GltfLayeredParams p, ThinFilm film, vec3 f0, flo
   return GLTF_IRIDESCENCE ? gltf_mix(fresnel, film_reflectance(film, f0), p.film) : fresnel;
 }
 
-/* Facets at cos_h to wo. Inside of what transmits, the cosine beyond counts, where Schlick's
- * formula is the one from outside, and total reflection. */
+/* Inside of what transmits, Schlick's formula, which is the one from outside, takes the cosine
+ * beyond the boundary. */
+typedef struct GltfAngle {
+  float cosine;
+  int total; /* 1: all is reflected */
+  float pad0, pad1, pad2;
+} GltfAngle;
+
+CDL_INLINE int gltf_inside(GltfLayeredParams p) {
+  return GLTF_TRANSMISSION && !p.outside && p.transmission > 0.0f;
+}
+
+CDL_INLINE GltfAngle gltf_angle(GltfLayeredParams p, float cosine) {
+  GltfAngle angle = {cosine, 0, 0.0f, 0.0f, 0.0f};
+  int inside = gltf_inside(p);
+  float squared = fma(cosine, cosine, (p.eta - 1.0f) * (p.eta + 1.0f));
+  float beyond = math_min(math_safe_sqrt(squared) / p.eta, 1.0f);
+  angle.cosine = inside ? beyond : cosine;
+  angle.total = inside && squared <= 0.0f;
+  return angle;
+}
+
+/* Facets at cos_h to wo. */
 CDL_INLINE GltfFacet gltf_facet(GltfLayeredParams p, float cos_h) {
   GltfFacet facet;
-  int inside = GLTF_TRANSMISSION && !p.outside && p.transmission > 0.0f;
-  float squared = fma(cos_h, cos_h, (p.eta - 1.0f) * (p.eta + 1.0f));
-  float cos_t = math_min(math_safe_sqrt(squared) / p.eta, 1.0f);
-  int total = inside && squared <= 0.0f;
-  float cosine = inside ? cos_t : cos_h;
-  ThinFilm film = gltf_film(p, cosine);
-  vec3 dielectric = gltf_fresnel_at(p, film, p.f0, p.f90, cosine);
-  dielectric = v3_select(total, v3_all(1.0f), dielectric);
-  vec3 metal = gltf_fresnel_at(p, film, p.base, 1.0f, math_after(dielectric.z, cosine));
+  GltfAngle angle = gltf_angle(p, cos_h);
+  ThinFilm film = gltf_film(p, angle.cosine);
+  vec3 dielectric = gltf_fresnel_at(p, film, p.f0, p.f90, angle.cosine);
+  dielectric = v3_select(angle.total, v3_all(1.0f), dielectric);
+  vec3 metal = gltf_fresnel_at(p, film, p.base, 1.0f, angle.cosine);
   facet.specular = gltf_mix(dielectric, metal, p.metallic);
   facet.rest = (1.0f - p.metallic) * (1.0f - v3_max(dielectric));
   facet.pad = 0.0f;
   return facet;
+}
+
+/* ---- what the dielectric's specular lobe reflects in all ---- */
+
+/* From inside, facets that lean count as ones at a cosine that is less by
+ * GLTF_INSIDE_SHIFT alpha / (alpha + GLTF_INSIDE_ALPHA), fitted to be no more than what passes. */
+#define GLTF_INSIDE_SHIFT 0.18f
+#define GLTF_INSIDE_ALPHA 0.02f
+
+/* For light at w, in the facets' frame, of wo's side. */
+CDL_INLINE GltfAlbedo gltf_layered_albedo(GltfLayeredParams p, vec3 w) {
+  float cosine = math_saturate(w.z);
+  float alpha = math_max(p.surface.alpha_x, p.surface.alpha_y);
+  GltfAlbedo albedo = gltf_albedo(
+      GLTF_ANISOTROPY ? gltf_facets_toward(p.surface, w) : gltf_facets(sqrt(alpha)), cosine);
+  if (GLTF_TRANSMISSION) {
+    float shift = GLTF_INSIDE_SHIFT * alpha / (alpha + GLTF_INSIDE_ALPHA);
+    GltfAngle angle = gltf_angle(p, math_max(cosine - shift, 0.0f));
+    float edge = angle.total ? 1.0f : fresnel_schlick_weight(angle.cosine);
+    int inside = gltf_inside(p);
+    albedo.white = inside ? 1.0f : albedo.white;
+    albedo.edge = inside ? edge : albedo.edge;
+  }
+  return albedo;
+}
+
+/* Its mean over all directions. */
+CDL_INLINE GltfAlbedo gltf_layered_albedo_mean(GltfLayeredParams p) {
+  GltfAlbedo albedo = gltf_albedo_mean(GLTF_ANISOTROPY ? gltf_facets_mean(p.surface)
+                                                       : gltf_facets(sqrt(p.surface.alpha_x)));
+  int inside = gltf_inside(p);
+  albedo.white = inside ? 1.0f : albedo.white;
+  albedo.edge = inside ? GLTF_SCHLICK_MEAN : albedo.edge;
+  return albedo;
+}
+
+/* No less than what a film reflects in all, whatever its thickness: the two boundaries' albedos and
+ * what interference may add, by the inequality of Cauchy and Schwarz, 1.785 being the greatest
+ * absolute response of a channel. The inner boundary is seen at the cosine within the film. */
+CDL_INLINE float gltf_film_albedo(GltfLayeredParams p, GltfAlbedo albedo) {
+  float n = math_max(p.film_ior, 1.0f);
+  float least = film_inner_f0(n, math_min(math_min(p.f0.x, p.f0.y), p.f0.z));
+  float most = film_inner_f0(n, v3_max(p.f0));
+  float inner = math_max(least, most);
+  float outer = p.film_ior < 1.0f ? 1.0f : fresnel_f0(n);
+  float limit = fresnel_schlick_weight(math_safe_sqrt(1.0f - 1.0f / (n * n)));
+  float first = fma(1.0f - outer, albedo.edge, outer * albedo.white);
+  float edge = math_min(albedo.edge, limit * albedo.white);
+  float second = fma(1.0f - inner, edge, inner * albedo.white);
+  return math_min(fma(3.57f, sqrt(first * second), first + second), albedo.white);
+}
+
+/* What the lobe leaves of that. f90 does not lessen total reflection, nor a film. */
+CDL_INLINE float gltf_layered_left(GltfLayeredParams p, GltfAlbedo albedo) {
+  float reflected = gltf_reflected(albedo, v3_max(p.f0), gltf_inside(p) ? 1.0f : p.f90);
+  if (GLTF_IRIDESCENCE) reflected = math_lerp(reflected, gltf_film_albedo(p, albedo), p.film);
+  return 1.0f - reflected;
+}
+
+/* The mean of it; within a volume of what light from outside leaves over the index squared, as what
+ * passes a boundary is the same from either side. */
+CDL_INLINE float gltf_layered_left_mean(GltfLayeredParams p) {
+  GltfAlbedo mean = gltf_layered_albedo_mean(p);
+  float reflected = gltf_reflected(mean, v3_max(p.f0), gltf_inside(p) ? 1.0f : p.f90);
+  if (GLTF_IRIDESCENCE) {
+    mean.edge = 0.0f;
+    reflected = math_lerp(reflected, gltf_film_albedo(p, mean), p.film);
+  }
+  float left = 1.0f - reflected;
+  return math_max(gltf_inside(p) ? left * p.eta * p.eta : left, GLTF_LEFT_MIN);
 }
 
 #endif

@@ -62,11 +62,22 @@ CDL_INLINE ThinFilm film_make(float ior, float thickness, float cos_1) {
   return film;
 }
 
-/* One channel, over a base that alone, in air, would reflect f0 at normal incidence. */
-CDL_INLINE float film_channel(ThinFilm film, float f0, float first, float second) {
+/* The index of a base that alone, in air, would reflect f0 at normal incidence. */
+CDL_INLINE float film_base_ior(float f0) {
   float root = sqrt(math_clamp(f0 + 1e-4f, 0.0f, 0.9999f));
-  float ior = (1.0f + root) / (1.0f - root);
-  float inner = fresnel_schlick(math_sqr((ior - film.ior) / (ior + film.ior)), film.cos_2);
+  return (1.0f + root) / (1.0f - root);
+}
+
+/* What the boundary of such a base with a film of index ior reflects at normal incidence. */
+CDL_INLINE float film_inner_f0(float ior, float f0) {
+  float base = film_base_ior(f0);
+  return math_sqr((base - ior) / (base + ior));
+}
+
+/* One channel over such a base. */
+CDL_INLINE float film_channel(ThinFilm film, float f0, float first, float second) {
+  float ior = film_base_ior(f0);
+  float inner = fresnel_schlick(film_inner_f0(film.ior, f0), film.cos_2);
   float sign = (ior < film.ior) == (film.ior < 1.0f) ? -1.0f : 1.0f;
   float passed = 1.0f - film.reflectance;
   float product = math_min(film.reflectance * inner, 0.9999f);
