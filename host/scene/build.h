@@ -58,6 +58,12 @@ cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *jso
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index);
 
+/* phase.c: the member `phase` of the CDL_medium at `pointer`; NULL: isotropic. And the function of
+ * one asymmetry, which counts as 0.999 at most. */
+cdl_Status build_phase(Builder *builder, const char *pointer, const json_t *json,
+                       cdl_ScenePhase *phase);
+cdl_ScenePhase phase_hg(double g);
+
 /* medium_grid.c: the grids of a medium and where they lie, over what medium.c says; NULL: none. */
 cdl_Status build_medium_grid(Builder *builder, const char *pointer, const json_t *json,
                              cdl_SceneMedium *medium);

@@ -53,6 +53,14 @@ static json_t *json_of_materials(const cdl_Scene *scene) {
   return list;
 }
 
+/* The phase function of each medium. */
+static json_t *json_of_phases(const cdl_Scene *scene) {
+  json_t *list = json_array();
+  for (uint32_t i = 0; i < scene->medium_count; i++)
+    json_array_append_new(list, json_string(scene->media[i].phase.type));
+  return list;
+}
+
 static json_t *json_of_cameras(const cdl_Scene *scene) {
   json_t *list = json_array();
   for (uint32_t i = 0; i < scene->camera_count; i++)
@@ -97,8 +105,8 @@ static json_t *json_of_bounds(const cdl_Scene *scene) {
 
 static json_t *json_of_scene(const cdl_Scene *scene, const Totals *totals) {
   return json_pack(
-      "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:I, s:I, s:o, s:o, "
-      "s:o, s:o, s:I, s:f}",
+      "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:o, s:I, s:I, s:o, "
+      "s:o, s:o, s:o, s:I, s:f}",
       "scene", scene->path, "sha256", scene->sha256, "meshes", (json_int_t)scene->mesh_count,
       "triangles", (json_int_t)totals->triangles, "unique_triangles",
       (json_int_t)totals->unique_triangles, "instances", (json_int_t)scene->instance_count,
@@ -106,10 +114,10 @@ static json_t *json_of_scene(const cdl_Scene *scene, const Totals *totals) {
       (json_int_t)light_total(scene, totals), "light_kinds", "punctual",
       (json_int_t)scene->light_count, "emissive_instances", (json_int_t)totals->emissive,
       "environment", scene->environment.present, "media", (json_int_t)scene->medium_count,
-      "textures", (json_int_t)scene->texture_count, "images", (json_int_t)scene->image_count,
-      "animations", json_of_animations(scene), "variants", json_of_variants(scene), "extensions",
-      json_of_extensions(scene), "bounds", json_of_bounds(scene), "memory_bytes",
-      (json_int_t)totals->memory, "load_s", scene->load_s);
+      "phase_functions", json_of_phases(scene), "textures", (json_int_t)scene->texture_count,
+      "images", (json_int_t)scene->image_count, "animations", json_of_animations(scene), "variants",
+      json_of_variants(scene), "extensions", json_of_extensions(scene), "bounds",
+      json_of_bounds(scene), "memory_bytes", (json_int_t)totals->memory, "load_s", scene->load_s);
 }
 
 static void print_lights(FILE *out, const cdl_Scene *scene, const Totals *totals) {
@@ -163,6 +171,8 @@ static void print_text(FILE *out, const cdl_Scene *scene, const Totals *totals) 
   print_lights(out, scene, totals);
   fprintf(out, "media       %u%s\n", scene->medium_count,
           scene->medium != CDL_NONE ? ", one of them fills the scene" : "");
+  for (uint32_t i = 0; i < scene->medium_count; i++)
+    fprintf(out, "  %2u  %s\n", i, scene->media[i].phase.type);
   fprintf(out, "textures    %u on %u %s\n", scene->texture_count, scene->image_count,
           scene->image_count == 1 ? "image" : "images");
   fprintf(out, "memory      %.1f MB, loaded in %.3f s\n", (double)totals->memory / 1e6,

@@ -1,6 +1,5 @@
 /* medium.c: what fills a surface or the scene. */
 #include <math.h>
-#include <string.h>
 
 #include "lib/math.h"
 #include "scene/build.h"
@@ -14,24 +13,11 @@ static cdl_Status add_medium(Builder *builder, const cdl_SceneMedium *medium, ui
   return CDL_OK;
 }
 
-static cdl_Status read_phase(Builder *builder, const char *pointer, const json_t *json,
-                             cdl_SceneMedium *medium) {
-  const char *type = json_get_string(json, "type", "isotropic");
-  if (strcmp(type, "hg") == 0) {
-    medium->phase.g[0] = (float)json_get_number(json, "g", 0);
-    return CDL_OK;
-  }
-  if (strcmp(type, "isotropic") == 0) return CDL_OK;
-  document_note(builder->doc, NULL, pointer,
-                "the phase function %s is not supported; the medium scatters isotropically.", type);
-  return extension_mark(builder, "CDL_medium", CDL_EXTENSION_UNSUPPORTED);
-}
-
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json,
                         uint32_t *index) {
   cdl_SceneMedium medium = {.density = CDL_NONE, .temperature = CDL_NONE, .color = CDL_NONE};
   *index = CDL_NONE;
-  cdl_Status status = read_phase(builder, pointer, json_object_get(json, "phase"), &medium);
+  cdl_Status status = build_phase(builder, pointer, json_object_get(json, "phase"), &medium.phase);
   if (status) return status;
   json_get_numbers(json, "absorption", 3, medium.absorption);
   json_get_numbers(json, "scattering", 3, medium.scattering);
@@ -67,7 +53,8 @@ cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *sc
   json_get_numbers(volume, "attenuationColor", 3, colour);
   json_get_numbers(scatter, "multiscatterColor", 3, many);
   json_get_numbers(scatter, "multiscatterColorFactor", 3, many);
-  medium.phase.g[0] = (float)json_get_number(scatter, "scatterAnisotropy", 0);
+  double g = json_get_number(scatter, "scatterAnisotropy", 0);
+  medium.phase = phase_hg(g);
   for (int c = 0; c < 3; c++) {
     double depth = -math_log(fmaxf(colour[c], 1e-6f));
     double sigma = fmin(depth / fmax(distance, 1e-30), 1e30);

@@ -133,9 +133,10 @@ typedef struct cdl_SceneCamera {
 
 /* A phase function: a mixture of two lobes of Draine's (media/phase.h). */
 typedef struct cdl_ScenePhase {
-  float g[2];     /* asymmetry, (-1,1) */
-  float alpha[2]; /* >= 0; 0: Henyey and Greenstein's */
-  float second;   /* weight of the second lobe, [0,1] */
+  float g[2];       /* asymmetry, (-1,1) */
+  float alpha[2];   /* [0, 1e6]; 0: Henyey and Greenstein's */
+  float second;     /* weight of the second lobe, [0,1] */
+  const char *type; /* its name in the file; static */
 } cdl_ScenePhase;
 
 typedef struct cdl_SceneMedium {

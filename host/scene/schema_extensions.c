@@ -9,7 +9,8 @@ static const char *const models[] = {"diffuse",    "oren_nayar", "mirror",    "r
                                      "subsurface", "hair",       "interface", NULL};
 static const char *const distributions[] = {"ggx", "beckmann", NULL};
 static const char *const maskings[] = {"correlated", "separable", NULL};
-static const char *const phases[] = {"isotropic", "hg", "two_term_hg", "rayleigh", "draine", NULL};
+static const char *const phases[] = {"isotropic", "hg",       "two_term_hg", "rayleigh",
+                                     "draine",    "droplets", NULL};
 static const char *const methods[] = {"random_walk", "diffusion", "dipole", NULL};
 
 static const Member nothing[] = {END};
@@ -166,13 +167,10 @@ static const Member cdl_material[] = {CHOICE("model", REQUIRED | LISTED, models)
                                       END};
 static SCHEMA(schema_cdl_material, "CDL_material", cdl_material);
 
-static const Member phase[] = {CHOICE("type", LISTED, phases),
-                               NUMBER("g", ABOVE, -1, 1),
-                               NUMBER("g1", ABOVE, -1, 1),
-                               NUMBER("g2", ABOVE, -1, 1),
-                               NUMBER("weight", 0, 0, 1),
-                               NUMBER("alpha", 0, 0, INFINITY),
-                               END};
+static const Member phase[] = {
+    CHOICE("type", LISTED, phases),   NUMBERS("g", EITHER | ABOVE, 2, 2, -1, 1),
+    NUMBER("weight", 0, 0, 1),        NUMBER("alpha", 0, 0, INFINITY),
+    NUMBER("diameter", ABOVE, 0, 50), END};
 static SCHEMA(schema_phase, "phase", phase);
 static const Member grid[] = {STRING("uri", REQUIRED),
                               STRING("density", 0),

@@ -15,7 +15,7 @@ typedef struct cdl_Medium {
   float emission[3];   /* radiance per metre */
   float second;        /* weight of the phase function's second lobe, [0,1] */
   float g[2];          /* asymmetry of its lobes, (-1,1); > 0 is forward */
-  float alpha[2];      /* Draine's parameter of its lobes, >= 0; 0 is Henyey and Greenstein's */
+  float alpha[2];      /* Draine's parameter of its lobes, [0, 1e6]; 0 is Henyey and Greenstein's */
   float to_grid[12];   /* world to index space of the density grid, 3x4, row-major */
   uint temperature;    /* index into the grids, or CDL_NONE */
   uint color;          /* index of a grid of colours, which multiply the scattering, or CDL_NONE */

@@ -16,7 +16,7 @@ CDL_FUNCTION void shade_medium_strip(size_t first, CDL_CONSTANT cdl_Params *rest
     size_t stride = wave->stride;
     MediaStack stack = media_make(state_uint(path, CDL_PATH_MEDIA, stride, i),
                                   state_uint(path, CDL_PATH_MEDIA + 1, stride, i));
-    float g = media[media_current(stack, params->scene_medium)].g[0];
+    Phase phase = phase_of(media + media_current(stack, params->scene_medium));
     vec3 position = state_vec3(work, CDL_WORK_POSITION, stride, i);
     vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
     vec3 throughput = state_vec3(path, CDL_PATH_THROUGHPUT, stride, i);
@@ -26,10 +26,10 @@ CDL_FUNCTION void shade_medium_strip(size_t first, CDL_CONSTANT cdl_Params *rest
 #ifdef CDL_LIGHTS
     vec3 to_light = state_vec3(work, CDL_WORK_LIGHT_DIRECTION, stride, i);
     float light_pdf = state_float(work, CDL_WORK_LIGHT_PDF, stride, i);
-    float phase = phase_hg(v3_dot(direction, to_light), g);
-    float mis = light_pdf > 0.0f ? mis_power(light_pdf, phase) : 1.0f;
+    float value = phase_value(phase, v3_dot(direction, to_light));
+    float mis = light_pdf > 0.0f ? mis_power(light_pdf, value) : 1.0f;
     vec3 direct = v3_mul(throughput, state_vec3(work, CDL_WORK_LIGHT_WEIGHT, stride, i));
-    direct = v3_scale(direct, scatters ? phase * mis : 0.0f);
+    direct = v3_scale(direct, scatters ? value * mis : 0.0f);
     state_set_vec3(work, CDL_WORK_SHADOW_ORIGIN, stride, i, position);
     state_set_uint(work, CDL_WORK_SHADOW_MEDIA, stride, i, stack.inner);
     state_set_uint(work, CDL_WORK_SHADOW_MEDIA + 1, stride, i, stack.outer);
@@ -38,10 +38,10 @@ CDL_FUNCTION void shade_medium_strip(size_t first, CDL_CONSTANT cdl_Params *rest
 #endif
 
     PathRandom random = path_random(params, wave, state_uint(path, CDL_PATH_SLOT, stride, i));
-    float u, v, unused, chance;
+    float u, v, lobe, chance;
     vertex_random(random, counts_vertex(counts), CDL_PAIR_DIRECTION, &u, &v);
-    vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &unused, &chance);
-    PhaseSample sample = phase_hg_sample(direction, g, u, v);
+    vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
+    PhaseSample sample = phase_sample(phase, direction, u, v, lobe);
     vec3 next = roulette(params, counts_depth(counts) + 1u, throughput, chance);
     next = v3_select(scatters, next, v3_all(0.0f));
 

@@ -57,7 +57,8 @@ __kernel void facets(__global const float *in, __global float *out) {
 /* cos, g by item -> phase function per steradian */
 __kernel void phase(__global const float *in, __global float *out) {
   size_t i = get_global_id(0);
-  out[i] = phase_hg(in[2 * i], in[2 * i + 1]);
+  Phase phase = {in[2 * i + 1], 0.0f, 0.0f, 0.0f, 0.0f};
+  out[i] = phase_value(phase, in[2 * i]);
 }
 
 /* sigma (3), t -> transmittance (3) */

@@ -1,4 +1,4 @@
-/* test_media.c: the phase function and homogeneous media on the device, against closed forms. */
+/* test_media.c: homogeneous media on the device, against closed forms. */
 #include <stdarg.h>
 #include <stddef.h>
 #include <setjmp.h>
@@ -14,101 +14,11 @@
 #include "tests/device/chi2.h"
 #include "tests/device/harness.h"
 
-enum { SAMPLES = 1000000, STRESS = 10000000 / 64 * 64, CELLS = 64 };
+enum { SAMPLES = 1000000, CELLS = 64 };
 
 static Harness *harness;
 
-/* ---- Henyey and Greenstein ---- */
-
-static const float asymmetries[] = {-0.999f, -0.7f, -1e-4f, 0.0f, 1e-7f, 0.3f, 0.7f, 0.95f, 0.999f};
-enum { ASYMMETRIES = sizeof asymmetries / sizeof *asymmetries };
-
-/* Distribution of c = cos, integrated from the phase function by hand. */
-static double hg_distribution(double c, double g) {
-  if (fabs(g) < 1e-3) return 0.5 * (1 + c) + 0.75 * g * (c * c - 1);
-  return (1 - g * g) / (2 * g) * (1 / sqrt(1 + g * g - 2 * g * c) - 1 / (1 + g));
-}
-
-/* Cells of equal probability: cos at each border, by bisection. */
-static void hg_borders(double g, double borders[CELLS + 1]) {
-  for (int i = 0; i <= CELLS; i++) {
-    double low = -1, high = 1;
-    for (int n = 0; n < 100; n++) {
-      double mid = 0.5 * (low + high);
-      if (hg_distribution(mid, g) * CELLS < i)
-        low = mid;
-      else
-        high = mid;
-    }
-    borders[i] = i == CELLS ? 1 : low;
-  }
-}
-
-static int cell_of(const double borders[CELLS + 1], double c) {
-  int low = 0, high = CELLS;
-  while (high - low > 1) {
-    int mid = (low + high) / 2;
-    if (c < borders[mid])
-      high = mid;
-    else
-      low = mid;
-  }
-  return low;
-}
-
 #define ROW(k) ((double)rows[(k) * (size_t)SAMPLES + i])
-
-/* Cosine in cells of equal probability times four quarters of the turn around the direction. */
-static double hg_p_value(const float *rows, float g, const double d[3]) {
-  static double observed[CELLS * 4], expected[CELLS * 4];
-  double borders[CELLS + 1], t[3] = {d[1], -d[0], 0}, length = hypot(t[0], t[1]), mean = 0;
-  hg_borders(g, borders);
-  for (int i = 0; i < CELLS * 4; i++) observed[i] = 0, expected[i] = SAMPLES / (CELLS * 4.0);
-  t[0] /= length, t[1] /= length;
-  double b[3] = {-t[1] * d[2], t[0] * d[2], t[1] * d[0] - t[0] * d[1]};
-  for (size_t i = 0; i < SAMPLES; i++) {
-    double cosine = ROW(0) * d[0] + ROW(1) * d[1] + ROW(2) * d[2];
-    double along = ROW(0) * t[0] + ROW(1) * t[1];
-    double across = ROW(0) * b[0] + ROW(1) * b[1] + ROW(2) * b[2];
-    int quarter = (along > 0) + 2 * (across > 0);
-    /* from the sine, because narrow lobes lie within a few floats of cosine 1 */
-    double side = along * along + across * across;
-    double exact = copysign(side < 1 ? sqrt(1 - side) : 0, cosine);
-    if (fabs(cosine - ROW(3)) > 2e-6) fail_msg("g %g: cosine %g is %g", g, ROW(3), cosine);
-    if (fabs(ROW(4) / ROW(5) - 1) > (fabsf(g) > 0.99f ? 0.2 : 1e-4))
-      fail_msg("g %g, cos %g: pdf %g, value %g", g, cosine, ROW(4), ROW(5));
-    observed[cell_of(borders, exact) * 4 + quarter]++;
-    mean += cosine;
-  }
-  /* the mean cosine is g by definition */
-  assert_true(fabs(mean / SAMPLES - g) < 4e-3);
-  return chi2_test(observed, expected, CELLS * 4);
-}
-
-static void test_phase_sampling(void **state) {
-  (void)state;
-  const double d[3] = {0.48, -0.6, 0.64};
-  float *rows = calloc((size_t)SAMPLES * 6, sizeof *rows);
-  assert_non_null(rows);
-  for (uint i = 0; i < ASYMMETRIES; i++) {
-    float in[5] = {(float)d[0], (float)d[1], (float)d[2], asymmetries[i], as_float(i + 1)};
-    HarnessBuffer buffers[] = {{in, sizeof in}, {rows, (size_t)SAMPLES * 6 * sizeof *rows}};
-    harness_run(harness, "sample_phase", SAMPLES, buffers, 2);
-    double p = hg_p_value(rows, asymmetries[i], d);
-    if (p < chi2_threshold(ASYMMETRIES)) fail_msg("g %g: p = %g", (double)asymmetries[i], p);
-  }
-  free(rows);
-}
-
-static void test_phase_any_input(void **state) {
-  (void)state;
-  float *rows = calloc(STRESS, sizeof *rows), in[5] = {0, 0, 0, 0, as_float(9)};
-  assert_non_null(rows);
-  HarnessBuffer buffers[] = {{in, sizeof in}, {rows, STRESS * sizeof *rows}};
-  harness_run(harness, "stress_phase", STRESS, buffers, 2);
-  for (size_t i = 0; i < STRESS; i++) assert_true(rows[i] == 0);
-  free(rows);
-}
 
 /* ---- free flight ---- */
 
@@ -248,8 +158,6 @@ static int close_device(void **state) {
 int main(void) {
   harness_prepare();
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_phase_sampling),
-      cmocka_unit_test(test_phase_any_input),
       cmocka_unit_test(test_free_flight),
       cmocka_unit_test(test_transmittance),
   };
