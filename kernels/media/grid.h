@@ -101,7 +101,15 @@ CDL_INLINE void grid_cut(float origin, float direction, float inverse, uint size
   *to = along ? (inside ? *to : *from) : math_min(*to, last);
 }
 
+/* Denormal numbers, which some devices take for 0 and whose inverse may be infinite, are 0. */
+CDL_INLINE float grid_flush(float d) { return math_abs(d) < 1.17549435e-38f ? 0.0f : d; }
+
 CDL_INLINE float grid_inverse(float d) { return d == 0.0f ? 0.0f : 1.0f / d; }
+
+CDL_INLINE int grid_is_finite(vec3 a) {
+  float most = 3.40282347e+38f;
+  return math_abs(a.x) <= most && math_abs(a.y) <= most && math_abs(a.z) <= most;
+}
 
 CDL_INLINE vec3 grid_march_point(GridMarch m, float t) { return v3_madd(m.origin, t, m.direction); }
 
@@ -119,21 +127,23 @@ CDL_INLINE GridSpan grid_axis(CDL_GLOBAL const cdl_Grid *grid, int axis) {
 }
 
 /* The ray from `origin` along `direction`, both in the world, from `from` to `to` metres, which may
- * be infinite. */
+ * be infinite. A ray that is not finite in index space, or has no end there, ends at once. */
 CDL_INLINE GridMarch grid_march(CDL_GLOBAL const cdl_Medium *medium,
                                 CDL_GLOBAL const cdl_Grid *grid, vec3 origin, vec3 direction,
                                 float from, float to) {
   Transform to_grid = transform_load(medium->to_grid);
   GridMarch m;
   m.origin = transform_point(to_grid, origin);
-  m.direction = transform_direction(to_grid, direction);
+  vec3 d = transform_direction(to_grid, direction);
+  m.direction = v3(grid_flush(d.x), grid_flush(d.y), grid_flush(d.z));
   m.inverse =
       v3(grid_inverse(m.direction.x), grid_inverse(m.direction.y), grid_inverse(m.direction.z));
+  int sound = grid_is_finite(m.origin) && grid_is_finite(m.direction);
   grid_cut(m.origin.x, m.direction.x, m.inverse.x, grid->size[0], &from, &to);
   grid_cut(m.origin.y, m.direction.y, m.inverse.y, grid->size[1], &from, &to);
   grid_cut(m.origin.z, m.direction.z, m.inverse.z, grid->size[2], &from, &to);
   m.t = from;
-  m.end = to;
+  m.end = sound && to < CDL_INFINITY ? to : from;
   vec3 r = grid_march_point(m, from < to ? from : 0.0f);
   m.x = grid_keep(grid_brick_axis(grid_clamp_axis(r.x, grid->size[0])), grid_axis(grid, 0));
   m.y = grid_keep(grid_brick_axis(grid_clamp_axis(r.y, grid->size[1])), grid_axis(grid, 1));

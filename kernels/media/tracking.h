@@ -103,6 +103,15 @@ CDL_INLINE vec3 grid_color(CDL_GLOBAL const cdl_Medium *medium, GridMarch m, vec
                                      grid_most, grid_values)));
 }
 
+/* What ends a path that straight-on collisions hold up: it is in a grid whose largest density is
+ * far above the others' beside it. */
+#define TRACKING_COLLISIONS 65536u
+
+/* The density that fills the stretch up. Steps below the rounding of t would lead nowhere. */
+CDL_INLINE float grid_majorant(GridStretch s, float sigma_max) {
+  return math_min(s.most, 4194304.0f / (sigma_max * s.end));
+}
+
 /* Follows a path from `from` to `t_max` metres along its ray, which may be infinite, or to where it
  * is scattered. `u` draws the first distance, the stream the rest. Absorption is never drawn: what
  * only absorbs weakens the path and lets it through (ratio tracking). Emission is gathered over the
@@ -117,9 +126,9 @@ CDL_INLINE GridFlight grid_fly(CDL_GLOBAL const cdl_Medium *medium, vec3 origin,
   float depth = -math_log(1.0f - u);
   while (!grid_march_ends(m) && v3_max(flight.throughput) > 0.0f) {
     GridStretch s = grid_stretch(m, medium, grids, grid_most);
-    float rate = sigma_max * s.most;
+    float most = grid_majorant(s, sigma_max), rate = sigma_max * most;
     int collides = rate * (s.end - s.t) > depth;
-    float stop = collides ? math_min(fma(depth, 1.0f / rate, s.t), s.end) : s.end;
+    float stop = collides ? math_min(s.t + depth / rate, s.end) : s.end;
     if (medium->emissive && (s.hottest > 0.0f || medium->temperature == CDL_NONE)) {
       float at = fma(random_next(stream), stop - s.t, s.t);
       vec3 glow =
@@ -137,20 +146,21 @@ CDL_INLINE GridFlight grid_fly(CDL_GLOBAL const cdl_Medium *medium, vec3 origin,
     float density = grid_value(medium->density, 0u, m.x, m.y, m.z, r, grids, grid_table, grid_most,
                                grid_values);
     vec3 color = grid_color(medium, m, r, grids, grid_table, grid_most, grid_values);
-    GridCollision c = grid_collision(medium, density / s.most, sigma_max, color);
+    GridCollision c = grid_collision(medium, density / most, sigma_max, color);
     vec3 scattered = v3_mul(flight.throughput, c.scattered);
     vec3 straight = v3_mul(flight.throughput, c.straight);
     float real = scattered.x + scattered.y + scattered.z;
-    float all = straight.x + straight.y + straight.z + real;
+    float on = straight.x + straight.y + straight.z, all = on + real;
     flight.scattered = random_next(stream) * all < real;
     flight.throughput = flight.scattered ? v3_scale(scattered, all / real)
-                                         : v3_scale(straight, all / math_max(all - real, 1e-30f));
+                                         : v3_scale(straight, on > 0.0f ? all / on : 0.0f);
     if (flight.scattered) {
       flight.real++;
       flight.t = stop;
       return flight;
     }
     flight.null++;
+    if (flight.null == TRACKING_COLLISIONS) flight.throughput = v3_all(0.0f);
   }
   return flight;
 }
@@ -169,20 +179,21 @@ CDL_INLINE vec3 grid_transmit(vec3 light, CDL_GLOBAL const cdl_Medium *medium, v
   GridMarch m = grid_march(medium, grids + medium->density, origin, direction, from, to);
   float sigma_max = grid_sigma_max(medium), brightest = v3_max(light);
   float depth = -math_log(1.0f - random_next(stream));
+  uint collisions = 0u;
   while (!grid_march_ends(m)) {
     GridStretch s = grid_stretch(m, medium, grids, grid_most);
-    float rate = sigma_max * s.most;
+    float most = grid_majorant(s, sigma_max), rate = sigma_max * most;
     if (!(rate * (s.end - s.t) > depth)) {
       depth = math_max(fma(-rate, s.end - s.t, depth), 0.0f);
       m = grid_march_on(m, s);
       continue;
     }
-    m.t = math_min(fma(depth, 1.0f / rate, s.t), s.end);
+    m.t = math_min(s.t + depth / rate, s.end);
     depth = -math_log(1.0f - random_next(stream));
     float density = grid_value(medium->density, 0u, m.x, m.y, m.z, grid_march_point(m, m.t), grids,
                                grid_table, grid_most, grid_values);
-    light =
-        v3_mul(light, grid_collision(medium, density / s.most, sigma_max, v3_all(1.0f)).straight);
+    light = v3_mul(light, grid_collision(medium, density / most, sigma_max, v3_all(1.0f)).straight);
+    if (++collisions == TRACKING_COLLISIONS) return v3_all(0.0f);
     if (v3_max(light) < TRACKING_FAINT * brightest) {
       if (!(random_next(stream) < TRACKING_SURVIVAL)) return v3_all(0.0f);
       light = v3_scale(light, 1.0f / TRACKING_SURVIVAL);
