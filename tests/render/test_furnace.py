@@ -9,7 +9,7 @@ events and more."""
 import numpy as np
 
 from support.optics import (beckmann_density, beckmann_lambda, fresnel_conductor, ggx_density,
-                            ggx_lambda, gltf_brdf, microfacet_brdf, reflected)
+                            ggx_lambda, gltf_albedo, microfacet_brdf, reflected)
 from support.render import render
 from support.scene import Scene
 from support.shapes import box, inside_out, look_at, move, quad, sphere
@@ -137,7 +137,8 @@ def test_metals_against_quadrature():
 
 
 def test_gltf_against_quadrature():
-    """glTF's metallic-roughness against appendix B of the specification, integrated."""
+    """glTF's metallic-roughness against its specular lobe integrated. What is below loses up to
+    0.7 % to a fit that stays on the safe side, and gains nothing."""
     base = (0.9, 0.5, 0.1)
     index = {"KHR_materials_ior": {"ior": 1.7}}
     for degrees, kinds in ((0, [(0, 0.4), (1, 0.5)]), (70, [(0, 0.7), (0.5, 0.6)])):
@@ -145,10 +146,17 @@ def test_gltf_against_quadrature():
                      for m, r in kinds]
         picture, regions = seen_at(degrees, materials, 1024)
         for region, (metallic, roughness) in zip(regions, kinds):
-            want = [reflected(gltf_brdf(b, metallic, roughness, 1.7), direction(degrees))
-                    for b in base]
-            agrees("glTF metallic %g, roughness %g at %d degrees" % (metallic, roughness, degrees),
-                   picture, want, region=region)
+            want = np.array([gltf_albedo(b, metallic, roughness, 1.7, direction(degrees))
+                             for b in base])
+            name = "glTF metallic %g, roughness %g at %d degrees" % (metallic, roughness, degrees)
+            if metallic == 1:
+                agrees(name, picture, want, region=region)
+                continue
+            got = picture.rgb[region].mean(0)
+            noise = 3 * np.sqrt(picture.variance[region].sum(0)) / region.sum()
+            check(name, (noise < 0.003).all() and (got < want + noise + 2e-4).all()
+                  and (got > want - noise - 0.007 * np.array(base)).all(),
+                  "%s instead of %s" % (got, want))
 
 
 if __name__ == "__main__":

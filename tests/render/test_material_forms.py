@@ -9,7 +9,7 @@ import numpy as np
 
 from support.cells import Cells, direction, front_and_back, layers, tilted
 from support.color import TO_RGB, matching_functions
-from support.optics import fresnel_dielectric, ggx_density, hemisphere
+from support.optics import fresnel_dielectric, ggx_density, gltf_below, hemisphere
 from support.shapes import quad
 from support.verdict import main, near
 
@@ -199,19 +199,22 @@ def test_anisotropy():
 
 
 def test_specular():
-    """F0 = min(((ior - 1)/(ior + 1))^2 color, 1) factor and F90 = factor; 1 - max(F) is left to the
-    diffuse part."""
-    lit, color = Lit(3, 1), np.array((1.0, 0.4, 0.1))
-    for factor, ior, tilt in ((0.7, 1.5, 25), (1.0, 1.8, 60), (0.3, 1.33, 0)):
-        def f(wo, wi, factor=factor, ior=ior):
-            f0 = np.minimum(((ior - 1) / (ior + 1)) ** 2 * color, 1) * factor
-            fresnel = schlick(f0, float(half(wo, wi) @ wo), factor)
-            return fresnel * ggx_separable(wo, wi, 0.25) + (1 - fresnel.max()) * 0.6 / np.pi
-        lit.expect("specular %g, ior %g" % (factor, ior), dict(
-            base=(0.6, 0.6, 0.6), metallic=0.0, roughness=0.5,
-            **layers(ior={"ior": ior}, specular={"specularFactor": factor,
-                                                 "specularColorFactor": list(color)})), tilt, f)
-    lit.judge()
+    """F0 = min(((ior - 1)/(ior + 1))^2 color, 1) factor and F90 = factor; the base gets what is
+    left of the channel that reflects most, but for the error of a fit."""
+    color = np.array((1.0, 0.4, 0.1))
+    for base, tolerance in ((0, 1e-4), (0.6, 0.01)):
+        lit = Lit(3, 1)
+        for factor, ior, tilt in ((0.7, 1.5, 25), (1.0, 1.8, 60), (0.3, 1.33, 0)):
+            def f(wo, wi, factor=factor, ior=ior):
+                f0 = np.minimum(((ior - 1) / (ior + 1)) ** 2 * color, 1) * factor
+                fresnel = schlick(f0, float(half(wo, wi) @ wo), factor)
+                left = gltf_below(wo, wi, 0.25, f0.max(), factor) if base else 0
+                return fresnel * ggx_separable(wo, wi, 0.25) + left * base / np.pi
+            lit.expect("specular %g, ior %g, base %g" % (factor, ior, base), dict(
+                base=(base,) * 3, metallic=0.0, roughness=0.5,
+                **layers(ior={"ior": ior}, specular={"specularFactor": factor,
+                                                     "specularColorFactor": list(color)})), tilt, f)
+        lit.judge(tolerance)
 
 
 def test_retroreflection():

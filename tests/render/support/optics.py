@@ -96,20 +96,25 @@ def microfacet_brdf(density, smith, fresnel, alpha, correlated):
     return brdf
 
 
-def gltf_brdf(base, metallic, roughness, ior):
-    """One channel of metallic-roughness: glTF 2.0, appendix B.3.1 to B.3.5."""
-    alpha, f0 = roughness ** 2, ((ior - 1) / (ior + 1)) ** 2
+def specular_albedo(wo, alpha, f0, f90=1.0):
+    """One channel of what glTF's specular lobe returns: GGX, separable masking, Schlick."""
+    def fresnel(cosine):
+        return f0 + (f90 - f0) * (1 - cosine) ** 5
+    return reflected(microfacet_brdf(ggx_density, ggx_lambda, fresnel, alpha, False), wo)
 
-    def brdf(wo, wi, h):
-        # Masking is the product of 2 cos / (cos + sqrt(a^2 + (1 - a^2) cos^2)) of both directions.
-        def g1(c):
-            return 2 * c / (c + np.sqrt(alpha ** 2 + (1 - alpha ** 2) * c * c))
-        cos_h = np.sum(wi * h, -1)
-        visibility = g1(wo[2]) * g1(wi[..., 2]) / (4 * wo[2] * wi[..., 2])
-        specular = visibility * ggx_density(h[..., 2], alpha)
-        weight = (1 - np.abs(cos_h)) ** 5
-        metal = specular * (base + (1 - base) * weight)
-        fresnel = f0 + (1 - f0) * weight
-        dielectric = (1 - fresnel) * base / np.pi + fresnel * specular
-        return (1 - metallic) * dielectric + metallic * metal
-    return brdf
+
+def gltf_below(wo, wi, alpha, f0, f90=1.0):
+    """What the diffuse part below that lobe is multiplied by, ideally: what the lobe leaves of both
+    directions, over the mean."""
+    nodes, weights = np.polynomial.legendre.leggauss(12)
+    cosines, weights = (nodes + 1) / 2, weights / 2
+    at = [specular_albedo(np.array([np.sqrt(1 - c * c), 0, c]), alpha, f0, f90) for c in cosines]
+    mean = np.sum(2 * cosines * weights * (1 - np.array(at)))
+    return np.prod([1 - specular_albedo(w, alpha, f0, f90) for w in (wo, wi)]) / mean
+
+
+def gltf_albedo(base, metallic, roughness, ior, wo):
+    """One channel of metallic-roughness under a sky of 1: the base gets what specular leaves."""
+    dielectric = specular_albedo(wo, roughness ** 2, ((ior - 1) / (ior + 1)) ** 2)
+    metal = specular_albedo(wo, roughness ** 2, base)
+    return (1 - metallic) * (dielectric + base * (1 - dielectric)) + metallic * metal
