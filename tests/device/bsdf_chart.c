@@ -28,14 +28,20 @@ BsdfChartSetup bsdf_chart_setup(const BsdfChart *chart) {
   return setup;
 }
 
-/* Times the Jacobian; `angle` is the chart's, from upwards. */
-static double density_at(const BsdfChart *c, double s, double radius, double angle) {
+/* The direction at a chart's angle, from upwards, on a ring; returns the angle's Jacobian. */
+static double direction(const BsdfChart *c, double s, double angle, double w[3]) {
   double sine = c->aspect * sin(angle), cosine = cos(angle), side2 = sine * sine + cosine * cosine;
-  double scale = radius / sqrt(side2), l[3] = {-scale * sine, scale * cosine, 1 - s}, w[3];
+  double scale = sqrt(fmax(s * (2 - s), 0) / side2);
+  double l[3] = {-scale * sine, scale * cosine, 1 - s};
   for (int i = 0; i < 3; i++)
     w[i] = l[0] * c->axes[0][i] + l[1] * c->axes[1][i] + l[2] * c->axes[2][i];
   if (c->below) w[2] = -w[2];
-  return c->density(c->context, w) * (c->spread + s) * c->aspect / side2;
+  return c->aspect / side2;
+}
+
+static double density_at(const BsdfChart *c, double s, double angle) {
+  double w[3], jacobian = direction(c, s, angle, w);
+  return c->density(c->context, w) * (c->spread + s) * jacobian;
 }
 
 static const double nodes[4] = {-0.861136311594053, -0.339981043584856, 0.339981043584856,
@@ -69,15 +75,29 @@ static double gauss(const BsdfChart *c, double x0, double x1, double y0, double 
   double hx = 0.5 * (x1 - x0), sum = 0;
   for (int i = 0; i < 4; i++) {
     double s = distance(c, x0 + hx * (1 + nodes[i])), line = 0;
-    double radius = sqrt(fmax(s * (2 - s), 0)), end = horizon(c, s);
+    double end = horizon(c, s);
     double low = fmax(angle_of(y0), -end), high = fmin(angle_of(y1), end);
     double hy = 0.5 * (high - low);
     if (hy <= 0) continue;
-    for (int j = 0; j < 4; j++)
-      line += weights[j] * density_at(c, s, radius, low + hy * (1 + nodes[j]));
+    for (int j = 0; j < 4; j++) line += weights[j] * density_at(c, s, low + hy * (1 + nodes[j]));
     sum += weights[i] * hy * line;
   }
   return sum * hx * c->range;
+}
+
+/* Whether the chart's edge runs through a cell, as far as nine of its points tell. */
+static int has_edge(const BsdfChart *c, double x0, double x1, double y0, double y1) {
+  int above = 0;
+  for (int i = 0; i < 9; i++) {
+    double x = x0 + 0.5 * (i % 3) * (x1 - x0), y = y0 + 0.5 * (int)(i / 3) * (y1 - y0), w[3];
+    direction(c, distance(c, x), angle_of(y), w);
+    above += w[0] * c->edge[0] + w[1] * c->edge[1] + w[2] * c->edge[2] > 0;
+  }
+  return above > 0 && above < 9;
+}
+
+static int is_cut(const BsdfChart *c, double x0, double x1, double y0, double y1) {
+  return has_horizon(c, x0, x1, y0, y1) || (c->edge[2] > 0 && has_edge(c, x0, x1, y0, y1));
 }
 
 static double refine(const BsdfChart *c, double x0, double x1, double y0, double y1, double whole,
@@ -86,9 +106,9 @@ static double refine(const BsdfChart *c, double x0, double x1, double y0, double
   double parts[4], sum = 0;
   for (int i = 0; i < 4; i++)
     sum += parts[i] = gauss(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1]);
-  int done = fabs(sum - whole) <= fmax(2e-4 * sum, 2e-7);
-  done = done && (depth >= c->horizon_depth || !has_horizon(c, x0, x1, y0, y1));
-  if (depth == MAX_DEPTH || done) return sum;
+  int done = fabs(sum - whole) <= fmax(3e-4 * sum, 2e-7);
+  if (depth == MAX_DEPTH || (done && !(depth < c->horizon_depth && is_cut(c, x0, x1, y0, y1))))
+    return sum;
   sum = 0;
   for (int i = 0; i < 4; i++)
     sum += refine(c, xs[i & 1], xs[(i & 1) + 1], ys[i >> 1], ys[(i >> 1) + 1], parts[i], depth + 1);

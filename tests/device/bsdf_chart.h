@@ -18,6 +18,7 @@ typedef struct BsdfChart {
   BsdfDensity density;
   const void *context;
   int horizon_depth; /* cells on the horizon are halved as often, up to 6; 3 is good for 4e-4 */
+  double edge[3];    /* normal of a plane on which the density jumps, or 0; refined likewise */
   int below;         /* the directions with z < 0; the chart has them mirrored up */
   double axes[3][3], spread, range, aspect;
 } BsdfChart;
@@ -29,7 +30,7 @@ void bsdf_chart_init(BsdfChart *chart, const double middle[3], double width);
 /* What a kernel needs of it. */
 BsdfChartSetup bsdf_chart_setup(const BsdfChart *chart);
 
-/* The integral over each cell, and their sum as result: to 2e-4 of it or 2e-7, whichever is more.
+/* The integral over each cell, and their sum as result: to 3e-4 of it or 2e-7, whichever is more.
  */
 double bsdf_chart_integrate(const BsdfChart *chart, double cells[BSDF_CELLS]);
 

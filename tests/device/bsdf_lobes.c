@@ -85,7 +85,9 @@ void bsdf_lobes_init(BsdfLobes *l, const BsdfCase *c, BsdfPoint point, vec3 wo) 
   const double middles[3][3] = {{-wo.x, -wo.y, wo.z}, {0, 0, 1}, {wo.x, wo.y, wo.z}};
   bsdf_chart_init(&l->charts[0], middles[c->center], c->width);
   init_below(&l->charts[1], c, wo);
+  const double coat[3] = {point.coat_normal.x, point.coat_normal.y, point.coat_normal.z};
   for (int i = 0; i < 2; i++) {
+    for (int k = 0; k < 3 && coat[2] < 1; k++) l->charts[i].edge[k] = coat[k];
     l->charts[i].density = i == 0 && graininess(c, wo.z) > 0.05 ? narrow_density : density;
     l->charts[i].context = l;
     l->charts[i].below = i;
