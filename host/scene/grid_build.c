@@ -10,7 +10,7 @@
 
 #include "scene/grid_parts.h"
 
-enum { CHANNELS_MAX = 3, SHARED = 1024 };
+enum { CHANNELS_MAX = 3, SHARED = 1024, FEW = 1024 /* bricks not worth a second thread */ };
 
 /* In the table between the two passes. */
 #define STORED (CDL_NONE - 1)
@@ -22,15 +22,26 @@ typedef struct Axis {
   uint32_t at[GRID_STORED];
 } Axis;
 
+/* A voxel of the box along axis `k`, in voxels of the source's blocks; its last one past its end.
+ */
+static int64_t voxel_of(const GridSource *source, const cdl_SceneGrid *grid, int k,
+                        uint32_t voxel) {
+  if (voxel > grid->size[k] - 1) voxel = grid->size[k] - 1;
+  return (int64_t)grid->low[k] + voxel - (int64_t)source->first[k] * GRID_BRICK;
+}
+
+/* -1: outside of all blocks. */
+static int32_t block_at(const GridSource *source, int k, int64_t voxel) {
+  if (voxel < 0 || voxel >= (int64_t)source->blocks[k] * GRID_BRICK) return -1;
+  return (int32_t)(voxel / GRID_BRICK);
+}
+
 static Axis axis_of(const GridSource *source, const cdl_SceneGrid *grid, int k, uint32_t brick) {
   Axis axis;
   for (uint32_t i = 0; i < GRID_STORED; i++) {
-    uint32_t voxel = brick * GRID_BRICK + i;
-    if (voxel > grid->size[k] - 1) voxel = grid->size[k] - 1;
-    int64_t from = (int64_t)grid->low[k] + voxel - (int64_t)source->first[k] * GRID_BRICK;
-    int outside = from < 0 || from >= (int64_t)source->blocks[k] * GRID_BRICK;
-    axis.block[i] = outside ? -1 : (int32_t)(from / GRID_BRICK);
-    axis.at[i] = outside ? 0 : (uint32_t)(from % GRID_BRICK);
+    int64_t voxel = voxel_of(source, grid, k, brick * GRID_BRICK + i);
+    axis.block[i] = block_at(source, k, voxel);
+    axis.at[i] = (uint32_t)(voxel & (GRID_BRICK - 1));
   }
   return axis;
 }
@@ -79,9 +90,10 @@ static void slots_under(const GridSource *source, const cdl_SceneGrid *grid,
                         const uint32_t brick[3], uint32_t slots[8]) {
   int32_t block[3][2];
   for (int k = 0; k < 3; k++) {
-    Axis axis = axis_of(source, grid, k, brick[k]);
-    block[k][0] = axis.block[0];
-    block[k][1] = axis.block[GRID_STORED - 1];
+    for (int end = 0; end < 2; end++) {
+      uint32_t voxel = (brick[k] + (uint32_t)end) * GRID_BRICK;
+      block[k][end] = block_at(source, k, voxel_of(source, grid, k, voxel));
+    }
   }
   for (int i = 0; i < 8; i++)
     slots[i] = slot_of(source, block[0][i & 1], block[1][i >> 1 & 1], block[2][i >> 2]);
@@ -200,7 +212,7 @@ static cdl_Status fill_bricks(const GridSource *source, cdl_SceneGrid *grid,
     return refuse_size(why);
   grid->values = malloc((grid->brick_count * each + 1) * sizeof *grid->values);
   if (!grid->values) return CDL_BAD_INPUT;
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (grid->brick_count > FEW)
   for (uint32_t i = 0; i < grid->brick_count; i++) {
     uint32_t brick[3];
     brick_at(grid, entries[i], brick);
@@ -245,7 +257,7 @@ cdl_Status grid_build(const GridSource *source, const int32_t low[3], const uint
   *why = "there is not enough memory for it";
   cdl_Status status = prepare(source, low, size, room, grid, &count, why);
   if (status) return status;
-#pragma omp parallel for schedule(dynamic, 64)
+#pragma omp parallel for schedule(dynamic, 64) if (count > FEW)
   for (size_t i = 0; i < count; i++) survey(source, grid, i);
   find_range(grid, count);
   uint32_t *entries = malloc((count + 1) * sizeof *entries);

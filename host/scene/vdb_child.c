@@ -93,8 +93,9 @@ static void detach(int to) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   signal(SIGINT, SIG_IGN);
 #if !defined(__SANITIZE_ADDRESS__) /* whose reports are wanted */
-  int nowhere = open("/dev/null", O_WRONLY);
-  if (nowhere >= 0) dup2(nowhere, STDERR_FILENO);
+  int nowhere = open("/dev/null", O_RDWR);
+  for (int i = STDIN_FILENO; nowhere >= 0 && i <= STDERR_FILENO; i++)
+    if (i != to) dup2(nowhere, i);
   for (size_t i = 0; i < sizeof fatal / sizeof *fatal; i++) signal(fatal[i], SIG_DFL);
 #else
   (void)fatal;
@@ -115,6 +116,7 @@ _Noreturn void vdb_child(const uint8_t *data, size_t size, const char *name, siz
   limit(RLIMIT_CORE, 0, 0);
   limit(RLIMIT_CPU, vdb_seconds(size), 1);
   if (space) limit(RLIMIT_AS, space + room, 0);
+  vdb_cage();
   outlet.to = to;
   int good = vdb_read(data, size, name, &sink, error);
   Record record = {.kind = good ? RECORD_DONE : RECORD_FAILED};

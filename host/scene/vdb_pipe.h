@@ -27,4 +27,7 @@ static inline unsigned vdb_seconds(size_t size) { return 3 + (unsigned)(size >> 
  * may take `room` bytes more than it has. */
 _Noreturn void vdb_child(const uint8_t *data, size_t size, const char *name, size_t room, int to);
 
+/* Leaves the process nothing but to compute, and to write to what is open. */
+void vdb_cage(void);
+
 #endif
