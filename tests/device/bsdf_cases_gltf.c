@@ -6,11 +6,11 @@
 #define GREY(x)                                                                                    \
   { x, 0.5f * x, 0.1f }
 
-/* The specification's own diffuse part returns more than it gets: see gltf.h. */
-#define GLTF(b, roughness, metallic, e)                                                            \
+/* `low`: the least that it returns of uniform light. */
+#define GLTF(b, roughness, metallic, low)                                                          \
   {                                                                                                \
     .name = "gltf " #b " " #roughness " " #metallic, .model = BSDF_gltf, .base = {b, b, b},        \
-    .width = roughness * roughness < 1e-3f ? 1e-3f : roughness * roughness, .energy = e,           \
+    .width = roughness * roughness < 1e-3f ? 1e-3f : roughness * roughness, .least = low,          \
     .words = {                                                                                     \
       metallic,                                                                                    \
       roughness,                                                                                   \
@@ -18,14 +18,14 @@
     }                                                                                              \
   }
 
-/* `e`: the most that the core's diffuse part returns, see gltf.h. Refraction's half vector is found
- * from a difference that has few digits where both directions are nearly along the surface. */
+/* Refraction's half vector is found from a difference that has few digits where both directions are
+ * nearly along the surface. */
 #define LAYER(name) [CDL_GLTF_LAYERED_##name]
-#define LAYERED(text, metal, rough, narrow, e, index, ...)                                         \
+#define LAYERED(text, metal, rough, narrow, index, ...)                                            \
   {                                                                                                \
     .name = "gltf_layered " #metal " " #rough " " text, .model = BSDF_gltf_layered,                \
-    .base = GREY(1), .energy = e, .width = narrow, .eta = index,                                   \
-    .reciprocity = index > 0 ? 0.02f : 0, .words = {                                               \
+    .base = GREY(1), .width = narrow, .eta = index, .reciprocity = index > 0 ? 0.02f : 0,          \
+    .words = {                                                                                     \
       LAYER(METALLIC) = metal,                                                                     \
       LAYER(ROUGHNESS) = rough,                                                                    \
       LAYER(IOR) = 1.5f,                                                                           \
@@ -40,38 +40,40 @@
   }
 
 const BsdfCase bsdf_cases_gltf[] = {
-    GLTF(1, 0.0f, 1, 1),
-    GLTF(1, 0.3f, 1, 1),
-    GLTF(0.7f, 1.0f, 1, 1),
-    GLTF(1, 0.2f, 0, 1.7f),
-    GLTF(1, 0.6f, 0, 1.25f),
-    GLTF(0.2f, 1.0f, 0, 1),
-    GLTF(0, 0.4f, 0, 1),
-    GLTF(0.5f, 0.5f, 0.5f, 1.25f),
-    LAYERED("plain", 0, 0.5f, 0.25f, 1.2f, 0, LAYER(DISPERSION) = 0),
-    LAYERED("metal", 1, 0.3f, 0.09f, 1, 0, LAYER(DISPERSION) = 0),
-    LAYERED("brushed", 1, 0.4f, 0.16f, 1, 0, LAYER(ANISOTROPY_STRENGTH) = 0.7f),
-    LAYERED("clearcoat", 0.5f, 0.6f, 0.01f, 1, 0, LAYER(CLEARCOAT) = 1,
+    GLTF(1, 0.0f, 1, 0),
+    GLTF(1, 0.3f, 1, 0),
+    GLTF(0.7f, 1.0f, 1, 0),
+    GLTF(1, 0.0f, 0, 0.99f),
+    GLTF(1, 0.2f, 0, 0.99f),
+    GLTF(1, 0.6f, 0, 0.99f),
+    GLTF(1, 1.0f, 0, 0.99f),
+    GLTF(0.2f, 1.0f, 0, 0),
+    GLTF(0, 0.4f, 0, 0),
+    GLTF(0.5f, 0.5f, 0.5f, 0),
+    LAYERED("plain", 0, 0.5f, 0.25f, 0, LAYER(DISPERSION) = 0),
+    LAYERED("metal", 1, 0.3f, 0.09f, 0, LAYER(DISPERSION) = 0),
+    LAYERED("brushed", 1, 0.4f, 0.16f, 0, LAYER(ANISOTROPY_STRENGTH) = 0.7f),
+    LAYERED("clearcoat", 0.5f, 0.6f, 0.01f, 0, LAYER(CLEARCOAT) = 1,
             LAYER(CLEARCOAT_ROUGHNESS) = 0.1f),
-    LAYERED("dull coat", 0, 0.8f, 0.25f, 1, 0, LAYER(CLEARCOAT) = 1,
+    LAYERED("dull coat", 0, 0.8f, 0.25f, 0, LAYER(CLEARCOAT) = 1,
             LAYER(CLEARCOAT_ROUGHNESS) = 0.5f),
-    LAYERED("sheen", 0, 1.0f, 1.0f, 1, 0, LAYER(SHEEN_COLOR) = 1, 0.5f, 0.2f,
+    LAYERED("sheen", 0, 1.0f, 1.0f, 0, LAYER(SHEEN_COLOR) = 1, 0.5f, 0.2f,
             LAYER(SHEEN_ROUGHNESS) = 0.5f),
-    LAYERED("film", 0, 0.2f, 0.04f, 1.55f, 0, LAYER(IRIDESCENCE) = 1, LAYER(IRIDESCENCE_IOR) = 1.3f,
+    LAYERED("film", 0, 0.2f, 0.04f, 0, LAYER(IRIDESCENCE) = 1, LAYER(IRIDESCENCE_IOR) = 1.3f,
             LAYER(IRIDESCENCE_THICKNESS) = 400),
-    LAYERED("film on metal", 1, 0.4f, 0.16f, 1, 0, LAYER(IRIDESCENCE) = 1,
+    LAYERED("film on metal", 1, 0.4f, 0.16f, 0, LAYER(IRIDESCENCE) = 1,
             LAYER(IRIDESCENCE_IOR) = 1.8f, LAYER(IRIDESCENCE_THICKNESS) = 700),
-    LAYERED("sheet", 0, 0.4f, 0.16f, 1, 0, LAYER(TRANSMISSION) = 1),
-    LAYERED("clear sheet", 0, 0.0f, 0.001f, 1.25f, 0, LAYER(TRANSMISSION) = 0.7f),
-    LAYERED("volume", 0, 0.4f, 0.05f, 1, 1.5f, LAYER(TRANSMISSION) = 1, LAYER(THICKNESS) = 1),
-    LAYERED("leaf", 0, 0.6f, 0.36f, 1.1f, 0, LAYER(DIFFUSE_TRANSMISSION) = 0.6f,
+    LAYERED("sheet", 0, 0.4f, 0.16f, 0, LAYER(TRANSMISSION) = 1),
+    LAYERED("clear sheet", 0, 0.0f, 0.001f, 0, LAYER(TRANSMISSION) = 0.7f),
+    LAYERED("volume", 0, 0.4f, 0.05f, 1.5f, LAYER(TRANSMISSION) = 1, LAYER(THICKNESS) = 1),
+    LAYERED("leaf", 0, 0.6f, 0.36f, 0, LAYER(DIFFUSE_TRANSMISSION) = 0.6f,
             LAYER(DIFFUSE_TRANSMISSION_COLOR) = 1, 0.5f, 0.2f),
-    LAYERED("retro", 0.5f, 0.4f, 0.16f, 1.1f, 0, LAYER(RETROREFLECTION) = 1),
-    LAYERED("all", 0.2f, 0.5f, 0.04f, 1, 0, LAYER(ANISOTROPY_STRENGTH) = 0.5f,
-            LAYER(CLEARCOAT) = 0.5f, LAYER(CLEARCOAT_ROUGHNESS) = 0.2f, LAYER(SHEEN_COLOR) = 0.3f,
-            0.3f, 0.3f, LAYER(SHEEN_ROUGHNESS) = 0.3f, LAYER(IRIDESCENCE) = 0.5f,
-            LAYER(IRIDESCENCE_IOR) = 1.5f, LAYER(IRIDESCENCE_THICKNESS) = 300,
-            LAYER(TRANSMISSION) = 0.5f, LAYER(DIFFUSE_TRANSMISSION) = 0.3f,
-            LAYER(DIFFUSE_TRANSMISSION_COLOR) = 1, 1, 1, LAYER(RETROREFLECTION) = 0.3f),
+    LAYERED("retro", 0.5f, 0.4f, 0.16f, 0, LAYER(RETROREFLECTION) = 1),
+    LAYERED("all", 0.2f, 0.5f, 0.04f, 0, LAYER(ANISOTROPY_STRENGTH) = 0.5f, LAYER(CLEARCOAT) = 0.5f,
+            LAYER(CLEARCOAT_ROUGHNESS) = 0.2f, LAYER(SHEEN_COLOR) = 0.3f, 0.3f, 0.3f,
+            LAYER(SHEEN_ROUGHNESS) = 0.3f, LAYER(IRIDESCENCE) = 0.5f, LAYER(IRIDESCENCE_IOR) = 1.5f,
+            LAYER(IRIDESCENCE_THICKNESS) = 300, LAYER(TRANSMISSION) = 0.5f,
+            LAYER(DIFFUSE_TRANSMISSION) = 0.3f, LAYER(DIFFUSE_TRANSMISSION_COLOR) = 1, 1, 1,
+            LAYER(RETROREFLECTION) = 0.3f),
     {NULL},
 };
