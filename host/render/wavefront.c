@@ -111,6 +111,7 @@ static cdl_Status scatter(cdl_Wavefront *w) {
   if (!status) status = run_queues(w, CDL_KERNEL_pass, CDL_QUEUE_PASS, CDL_QUEUE_PASS);
   if (!status) status = shade_models(w);
   if (!status) status = run_queues(w, CDL_KERNEL_shade_medium, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
+  if (!status) status = run_queues(w, CDL_KERNEL_walk_subsurface, CDL_QUEUE_WALK, CDL_QUEUE_WALK);
   if (!status && w->has_lights)
     status = run_queues(w, CDL_KERNEL_occlude, first_lit, CDL_QUEUE_MEDIUM);
   return status;

@@ -42,6 +42,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
   add_option(options, sizeof options, f->grids, "CDL_GRIDS");
+  add_option(options, sizeof options, !f->draine, "CDL_DRAINE=0");
   add_option(options, sizeof options, f->motion, "CDL_MOTION");
   add_option(options, sizeof options, !f->dispersion, "CDL_DISPERSION=0");
   add_option(options, sizeof options, !f->energy_compensation, "CDL_ENERGY_COMPENSATION=0");
@@ -102,6 +103,7 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   CDL_SHADED_MODELS(SHADE_KERNEL)
 #undef SHADE_KERNEL
   list_add(list, f->media, CDL_KERNEL_shade_medium);
+  list_add(list, f->walks, CDL_KERNEL_walk_subsurface);
   list_add(list, w->has_lights, CDL_KERNEL_occlude);
   list_add(list, 1, CDL_KERNEL_film);
 }

@@ -52,14 +52,15 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
 cdl_Status build_gltf_layers(Builder *builder, uint32_t index, const json_t *json,
                              cdl_SceneMaterial *material);
 
-/* medium.c: CDL_medium, and KHR_materials_volume with KHR_materials_volume_scatter; *index is
- * CDL_NONE for none. */
+/* medium.c: CDL_medium, the inside of the CDL_material `subsurface`, and KHR_materials_volume with
+ * KHR_materials_volume_scatter; *index is CDL_NONE for none. */
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json, uint32_t *index);
+cdl_Status build_subsurface_medium(Builder *builder, const json_t *json, uint32_t *index);
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index);
 
 /* phase.c: the member `phase` of the CDL_medium at `pointer`; NULL: isotropic. And the function of
- * one asymmetry, which counts as 0.999 at most. */
+ * one asymmetry, which counts as 0.99999 at most. */
 cdl_Status build_phase(Builder *builder, const char *pointer, const json_t *json,
                        cdl_ScenePhase *phase);
 cdl_ScenePhase phase_hg(double g);

@@ -22,6 +22,10 @@ static const ParamMember rough_dielectric[] = {
     {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
     {"abbe", CDL_ROUGH_DIELECTRIC_ABBE, 1, {0}, "abbeTexture", CHANNEL_R},
     END};
+static const ParamMember subsurface[] = {
+    ALPHA(CDL_ROUGH_DIELECTRIC_ALPHA, 0.3f),
+    {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R},
+    END};
 static const ParamMember plastic[] = {ALPHA(CDL_PLASTIC_ALPHA, 0.1f),
                                       {"ior", CDL_PLASTIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
                                       END};
@@ -73,6 +77,7 @@ static const Model models[] = {
     {"plastic", CDL_MODEL_PLASTIC, REFLECTANCE, 0.5f, plastic},
     {"oren_nayar", CDL_MODEL_OREN_NAYAR, REFLECTANCE, 0.5f, oren_nayar},
     {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.5f, disney},
+    {"subsurface", CDL_MODEL_ROUGH_DIELECTRIC, NULL, NULL, 1, subsurface},
     {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
 
@@ -159,6 +164,7 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   for (int c = 0; c < 3; c++) material->base[c] = model->base;
   material->base_texture = material->coat_normal_texture = texture_ref_none();
   read_flags(json, material);
+  material->energy_compensation |= model->members == subsurface; /* light meets it many times */
   drop_compensation(builder, at, material);
   cdl_Status status = CDL_OK;
   if (model->color) {
@@ -170,6 +176,8 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   if (model->model == CDL_MODEL_DISNEY) material->param[CDL_DISNEY_THIN] = (float)material->thin;
   if (!status && model->model == CDL_MODEL_CONDUCTOR)
     status = read_metal(builder, at, json, material);
+  if (!status && model->members == subsurface)
+    status = build_subsurface_medium(builder, json, &material->medium);
   return status;
 }
 

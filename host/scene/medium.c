@@ -41,6 +41,37 @@ static float single_albedo(float many) {
   return (float)fmin(fmax(1 - s * s, 0), 1);
 }
 
+/* Mean reflectance of a smooth boundary for diffuse light from within (Egan and Hilgeman 1973). */
+static double inner_reflectance(double ior) {
+  if (ior < 1.0)
+    return fmax(-0.4399 + 0.7099 / ior - 0.3319 / (ior * ior) + 0.0636 / (ior * ior * ior), 0);
+  return fmin(fmax(-1.4399 / (ior * ior) + 0.7099 / ior + 0.6681 + 0.0636 * ior, 0), 1);
+}
+
+/* The inside of a subsurface material. `albedo` is what its body reflects of the light that has
+ * entered it: what the boundary sends back in from below is made up for. Scattering that favours
+ * one direction needs as much more of it as leaves the diffusion the same (similarity relation). */
+cdl_Status build_subsurface_medium(Builder *builder, const json_t *json, uint32_t *index) {
+  cdl_SceneMedium medium = {.density = CDL_NONE,
+                            .temperature = CDL_NONE,
+                            .color = CDL_NONE,
+                            .walk = 1,
+                            .phase = phase_hg(json_get_number(json, "g", 0))};
+  float albedo[3] = {0.5f, 0.5f, 0.5f}, radius[3] = {1e-3f, 1e-3f, 1e-3f};
+  double inner = inner_reflectance(json_get_number(json, "ior", 1.4)), g = medium.phase.g[0];
+  json_get_numbers(json, "albedo", 3, albedo);
+  json_get_numbers(json, "radius", 3, radius);
+  for (int c = 0; c < 3; c++) {
+    double body = albedo[c] / (1 - inner + inner * albedo[c]);
+    double isotropic = single_albedo((float)body);
+    double single = isotropic / (1 - g + g * isotropic);
+    double sigma = 1 / fmax(radius[c], 1e-6); /* smaller ones are opaque */
+    medium.scattering[c] = (float)(single * sigma);
+    medium.absorption[c] = (float)(fmax(1 - single, 0) * sigma);
+  }
+  return add_medium(builder, &medium, index);
+}
+
 /* KHR_materials_volume: attenuationColor is what is left after attenuationDistance, so that the
  * extinction is -ln(colour) / distance. A black channel is taken as 1e-6: it has no logarithm.
  * KHR_materials_volume_scatter says which part of the extinction is scattering. */
@@ -56,6 +87,7 @@ cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *sc
   double g = json_get_number(scatter, "scatterAnisotropy", 0);
   medium.phase = phase_hg(g);
   for (int c = 0; c < 3; c++) {
+    medium.walk |= many[c] > 0;
     double depth = -math_log(fmaxf(colour[c], 1e-6f));
     double sigma = fmin(depth / fmax(distance, 1e-30), 1e30);
     medium.scattering[c] = single_albedo(many[c]) * (float)sigma;

@@ -23,6 +23,8 @@ typedef struct cdl_PackFeatures {
   int opacity;  /* holes and half transparent surfaces among them */
   int motion;   /* things or cameras move while the shutter is open */
   int media;    /* any medium that is not vacuum */
+  int walks;    /* and inside of a subsurface material */
+  int draine;   /* and with a phase function other than Henyey and Greenstein's */
   int grids;    /* and with a density that a grid gives */
   int triangle_lights, punctual_lights, environment;
   uint32_t gltf_layers; /* CDL_GLTF_LAYER_* */

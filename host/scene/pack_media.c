@@ -35,6 +35,7 @@ static void pack_medium(const cdl_SceneMedium *from, cdl_Medium *to) {
   to->temperature = from->temperature;
   to->color = from->color;
   to->temperature_scale = from->temperature_scale;
+  to->walk = from->walk != 0;
   to->emissive = from->emission[0] > 0 || from->emission[1] > 0 || from->emission[2] > 0;
 }
 
@@ -70,7 +71,10 @@ cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack
   pack_medium(&(cdl_SceneMedium){.density = CDL_NONE, .temperature = CDL_NONE, .color = CDL_NONE},
               &pack->media[CDL_MEDIUM_VACUUM]);
   for (uint32_t i = 0; i < scene->medium_count; i++) {
+    const cdl_ScenePhase *phase = &scene->media[i].phase;
     pack_medium(&scene->media[i], &pack->media[i + 1]);
+    pack->features.walks |= scene->media[i].walk;
+    pack->features.draine |= phase->second > 0 || phase->alpha[0] > 0;
     if (scene->media[i].density != CDL_NONE) place(&scene->media[i], identity, &pack->media[i + 1]);
   }
   place_media(scene, pack);

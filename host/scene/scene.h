@@ -147,6 +147,7 @@ typedef struct cdl_SceneMedium {
   uint32_t temperature;    /* grid whose value times temperature_scale is kelvin, or CDL_NONE */
   uint32_t color;          /* grid of 3 channels that multiplies the scattering, or CDL_NONE */
   float temperature_scale; /* K */
+  int walk; /* 1: the inside of a subsurface material, whose collisions belong to one event */
   double to_index[12]; /* from the space of the node that holds the surface, or of the world for the
                           scene's medium, to the index space that all its grids share */
 } cdl_SceneMedium;

@@ -20,7 +20,7 @@ typedef struct cdl_Medium {
   uint temperature;    /* index into the grids, or CDL_NONE */
   uint color;          /* index of a grid of colours, which multiply the scattering, or CDL_NONE */
   float temperature_scale; /* kelvin for 1 in the grid */
-  uint pad;
+  uint walk; /* 1: the inside of a subsurface material; its collisions belong to one event */
 } cdl_Medium;
 CDL_ABI_SIZE(cdl_Medium, 128);
 

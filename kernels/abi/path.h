@@ -51,7 +51,8 @@ enum {
 #define CDL_QUEUE_PASS 1u   /* surfaces that let the path through: interfaces, holes */
 #define CDL_QUEUE_MODELS 2u /* + 2 model + emissive */
 #define CDL_QUEUE_MEDIUM (CDL_QUEUE_MODELS + 2u * CDL_MODEL_COUNT)
-#define CDL_QUEUE_ENDED (CDL_QUEUE_MEDIUM + 1u) /* counted, but not moved: too deep to go on */
+#define CDL_QUEUE_WALK (CDL_QUEUE_MEDIUM + 1u) /* scattered under a surface */
+#define CDL_QUEUE_ENDED (CDL_QUEUE_WALK + 1u)  /* counted, but not moved: too deep to go on */
 #define CDL_QUEUE_COUNT (CDL_QUEUE_ENDED + 1u)
 #define CDL_QUEUE_SHADOWS CDL_QUEUE_COUNT /* no queue: its count is that of the shadow rays */
 #define CDL_QUEUE_LIVE 0u                 /* written by shading: to be traced */

@@ -1,5 +1,5 @@
-/* sample_medium: the free flight of paths inside a medium that is the same everywhere: how far light
- * goes before it is scattered, what is absorbed on the way, and what the medium emits. */
+/* sample_medium: the free flight of paths inside a medium that is the same everywhere: how far
+ * light goes before it is scattered, what is absorbed on the way, and what the medium emits. */
 #include "lib/stage.h"
 
 #include "lib/dimensions.h"
@@ -45,7 +45,8 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
     vec3 next = v3_mul(throughput, flight.weight);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(alive, next, throughput));
     state_set_float(path, CDL_PATH_HIT_T, stride, i, scattered ? passed + flight.t : hit_t);
-    uint next_queue = counts_depth(counts) < params->max_depth ? CDL_QUEUE_MEDIUM : CDL_QUEUE_ENDED;
+    uint inside = medium->walk != 0u ? CDL_QUEUE_WALK : CDL_QUEUE_MEDIUM;
+    uint next_queue = counts_depth(counts) < params->max_depth ? inside : CDL_QUEUE_ENDED;
     state_set_uint(work, CDL_WORK_QUEUE, stride, i, scattered ? next_queue : queue);
   }
 }
