@@ -102,7 +102,8 @@ TEST_SOURCES := $(wildcard tests/*/test_*.c)
 TEST_PROGRAMS := $(TEST_SOURCES:tests/%.c=$(B)/tests/%)
 TEST_SCRIPTS := $(filter-out %/common.sh %/common.py,$(wildcard tests/*/*.sh tests/*/*.py))
 # What needs no device: the programs that the sanitizers watch.
-HOST_PROGRAMS := $(filter $(B)/tests/unit/% $(B)/tests/bad_input/% $(B)/tests/compression/%,$(TEST_PROGRAMS))
+HOST_PROGRAMS := $(filter $(B)/tests/unit/% $(B)/tests/bad_input/% $(B)/tests/compression/% \
+  $(B)/tests/volume/%,$(TEST_PROGRAMS))
 test_helpers = $(patsubst %,$(B)/obj/%.o,$(filter-out tests/$(1)/test_%,$(wildcard tests/$(1)/*.c tests/$(1)/*.cpp)))
 
 tests: $(TEST_PROGRAMS)
