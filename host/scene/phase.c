@@ -10,7 +10,7 @@ static const char *const types[] = {"hg",     "two_term_hg", "rayleigh",
                                     "draine", "droplets",    "isotropic"};
 
 /* Lobes narrower than a few floats of the cosine are none. */
-static float limited(double g) { return (float)fmin(fmax(g, -0.999), 0.999); }
+static float limited(double g) { return (float)fmin(fmax(g, -0.99999), 0.99999); }
 
 static void one_lobe(cdl_ScenePhase *phase, double g, double alpha) {
   phase->g[0] = limited(g);

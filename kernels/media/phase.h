@@ -16,6 +16,10 @@
 #include "lib/math.h"
 #include "lib/vec.h"
 
+#ifndef CDL_DRAINE
+#define CDL_DRAINE 1 /* 0: no medium has a second lobe, or an alpha above 0 */
+#endif
+
 typedef struct Phase {
   float g0, g1;         /* (-1,1) */
   float alpha0, alpha1; /* [0, 1e6] */
@@ -57,13 +61,15 @@ CDL_INLINE float phase_draine_norm(float g, float alpha) {
 CDL_INLINE float phase_lobe(float forward, float backward, float cosine, float g, float alpha) {
   float a = math_abs(g);
   float hg = phase_hg_from_rest(g < 0.0f ? backward : forward, a);
-  return hg * (fma(alpha * cosine, cosine, 1.0f) / phase_draine_norm(a, alpha));
+  float factor = fma(alpha * cosine, cosine, 1.0f) / phase_draine_norm(a, alpha);
+  return CDL_DRAINE ? hg * factor : hg;
 }
 
 CDL_INLINE float phase_mixture(Phase phase, float forward, float backward, float cosine) {
   float first = phase_lobe(forward, backward, cosine, phase.g0, phase.alpha0);
   float second = phase_lobe(forward, backward, cosine, phase.g1, phase.alpha1);
-  return (1.0f - phase.second) * first + phase.second * second;
+  float mixed = (1.0f - phase.second) * first + phase.second * second;
+  return CDL_DRAINE ? mixed : first;
 }
 
 /* Value and pdf, per steradian; -1 <= cosine <= 1, beyond that the value there. */
@@ -154,12 +160,12 @@ CDL_INLINE float phase_draine_invert(float u, float g, float alpha) {
   x = math_clamp(phase_draine_step(x, target, g, alpha), low, high);
   x = math_clamp(phase_draine_step(x, target, g, alpha), low, high);
   x = math_clamp(phase_draine_step(x, target, g, alpha), low, high);
-  return alpha > 0.0f ? x : u;
+  return CDL_DRAINE && alpha > 0.0f ? x : u;
 }
 
 /* A direction after scattering; u, v and w, which chooses the lobe, in [0,1). */
 CDL_INLINE PhaseSample phase_sample(Phase phase, vec3 direction, float u, float v, float w) {
-  int other = w < phase.second;
+  int other = CDL_DRAINE && w < phase.second;
   float g = other ? phase.g1 : phase.g0;
   float a = math_abs(g);
   float rest = phase_hg_rest(phase_draine_invert(u, a, other ? phase.alpha1 : phase.alpha0), a);

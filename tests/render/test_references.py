@@ -23,7 +23,7 @@ SPP = {"veach_mis": 1024}  # 512 for all others
 SCENES = ("beer_glass", "cloud_hg", "conductor_copper_beckmann_aniso", "conductor_gold_ggx",
           "cornell", "diffuse_furnace", "fog_global", "frosted_ggx", "glass_env",
           "instances_nonuniform", "mirror_glass_cornell", "punctual_lights", "random_walk_sss",
-          "sun_env", "veach_mis")
+          "rayleigh_box", "sun_env", "veach_mis")
 
 
 def statistics():

@@ -42,7 +42,7 @@ static void test_types(void **state) {
   check("", "isotropic", (double[]){0, 0, 0, 0, 0});
   check("\"type\":\"isotropic\",\"g\":0.5", "isotropic", (double[]){0, 0, 0, 0, 0});
   check("\"type\":\"hg\",\"g\":-0.7", "hg", (double[]){-0.7, 0, 0, 0, 0});
-  check("\"type\":\"hg\",\"g\":0.9999", "hg", (double[]){0.999, 0, 0, 0, 0});
+  check("\"type\":\"hg\",\"g\":0.999999", "hg", (double[]){0.99999, 0, 0, 0, 0});
   check("\"type\":\"two_term_hg\",\"g\":[0.8,-0.4]", "two_term_hg",
         (double[]){0.8, 0, -0.4, 0, 0.5});
   check("\"type\":\"two_term_hg\",\"g\":[0.8,-0.4],\"weight\":0.1", "two_term_hg",
@@ -70,8 +70,8 @@ static cdl_ScenePhase droplets(double diameter) {
 }
 
 /* Mie's theory for water and visible light: the asymmetry of cloud droplets is about 0.84 at 5 um
- * and grows with their size, to a little below 0.9; droplets far smaller than the wavelength scatter
- * as Rayleigh says, 3/4 (1 + cos^2). */
+ * and grows with their size, to a little below 0.9; droplets far smaller than the wavelength
+ * scatter as Rayleigh says, 3/4 (1 + cos^2). */
 static void test_droplets(void **state) {
   (void)state;
   for (double d = 0.001; d <= 50; d *= 1.01) {
