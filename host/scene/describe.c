@@ -4,7 +4,7 @@
 #include <stdlib.h>
 
 #include "core/text.h"
-#include "scene/scene.h"
+#include "scene/describe.h"
 
 /* What is counted rather than stored. */
 typedef struct Totals {
@@ -31,6 +31,7 @@ static Totals count(const cdl_Scene *scene) {
     totals.memory += mesh_memory(&scene->meshes[i]);
   }
   for (uint32_t i = 0; i < scene->image_count; i++) totals.memory += image_memory(scene->images[i]);
+  totals.memory += grids_memory(scene);
   totals.memory += (uint64_t)scene->instance_count * sizeof *scene->instances;
   for (uint32_t i = 0; i < scene->instance_count; i++) {
     const cdl_SceneMesh *mesh = &scene->meshes[scene->instances[i].mesh];
@@ -105,8 +106,8 @@ static json_t *json_of_bounds(const cdl_Scene *scene) {
 
 static json_t *json_of_scene(const cdl_Scene *scene, const Totals *totals) {
   return json_pack(
-      "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:o, s:I, s:I, s:o, "
-      "s:o, s:o, s:o, s:I, s:f}",
+      "{s:s, s:s, s:I, s:I, s:I, s:I, s:o, s:o, s:I, s:{s:I, s:I, s:b}, s:I, s:o, s:o, s:I, s:I, "
+      "s:o, s:o, s:o, s:o, s:I, s:f}",
       "scene", scene->path, "sha256", scene->sha256, "meshes", (json_int_t)scene->mesh_count,
       "triangles", (json_int_t)totals->triangles, "unique_triangles",
       (json_int_t)totals->unique_triangles, "instances", (json_int_t)scene->instance_count,
@@ -114,10 +115,11 @@ static json_t *json_of_scene(const cdl_Scene *scene, const Totals *totals) {
       (json_int_t)light_total(scene, totals), "light_kinds", "punctual",
       (json_int_t)scene->light_count, "emissive_instances", (json_int_t)totals->emissive,
       "environment", scene->environment.present, "media", (json_int_t)scene->medium_count,
-      "phase_functions", json_of_phases(scene), "textures", (json_int_t)scene->texture_count,
-      "images", (json_int_t)scene->image_count, "animations", json_of_animations(scene), "variants",
-      json_of_variants(scene), "extensions", json_of_extensions(scene), "bounds",
-      json_of_bounds(scene), "memory_bytes", (json_int_t)totals->memory, "load_s", scene->load_s);
+      "phase_functions", json_of_phases(scene), "grids", describe_grids(scene), "textures",
+      (json_int_t)scene->texture_count, "images", (json_int_t)scene->image_count, "animations",
+      json_of_animations(scene), "variants", json_of_variants(scene), "extensions",
+      json_of_extensions(scene), "bounds", json_of_bounds(scene), "memory_bytes",
+      (json_int_t)totals->memory, "load_s", scene->load_s);
 }
 
 static void print_lights(FILE *out, const cdl_Scene *scene, const Totals *totals) {
@@ -173,6 +175,7 @@ static void print_text(FILE *out, const cdl_Scene *scene, const Totals *totals) 
           scene->medium != CDL_NONE ? ", one of them fills the scene" : "");
   for (uint32_t i = 0; i < scene->medium_count; i++)
     fprintf(out, "  %2u  %s\n", i, scene->media[i].phase.type);
+  print_grids(out, scene);
   fprintf(out, "textures    %u on %u %s\n", scene->texture_count, scene->image_count,
           scene->image_count == 1 ? "image" : "images");
   fprintf(out, "memory      %.1f MB, loaded in %.3f s\n", (double)totals->memory / 1e6,
