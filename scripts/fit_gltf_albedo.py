@@ -5,8 +5,8 @@ The lobe is GGX of alpha = roughness^2 with separable masking and Schlick's Fres
 f0 white + (f90 - f0) edge, white that of facets that reflect all and edge that of Schlick's weight
 (1 - wo.h)^5. Fitted are 1 - white, and the cosine at which white (1 - cosine)^5 is edge, as sums
 of monomials cosine^i y^j roughness^k with y = alpha / (alpha + cosine). Both end above the
-quadrature's values; their means over the hemisphere, weighted by the cosine, are polynomials of roughness below
-those of the fits.
+quadrature's values; their means over the hemisphere, weighted by the cosine, are polynomials of
+roughness below those of the fits.
 
 Prints the coefficients, and how far the fits are off on other nodes than those of the fit, those of
 anisotropic surfaces included. Takes a minute."""
