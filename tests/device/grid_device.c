@@ -116,9 +116,40 @@ void grid_set_free(GridSet *set) {
   free(set->blackbody);
 }
 
+/* ---- rays ---- */
+
+static double spread(uint32_t *state, double low, double high) {
+  return low + (high - low) * field_random(state);
+}
+
+static const float specials[] = {0, 0, 0, 1e-41f, -1e-39f, -1e-38f, 1e-30f, -1e-20f, 1, -1};
+
+FieldRay grid_random_ray(uint32_t *state, const GridSet *set, int raw) {
+  FieldRay ray = {.from = 0, .to = INFINITY};
+  const uint32_t *size = set->grids[0].size;
+  int kind = (int)(4 * field_random(state));
+  double scale = kind == 3 ? exp2(spread(state, -90, 90)) : 1;
+  for (int k = 0; k < 3; k++) {
+    double at =
+        raw ? spread(state, -0.5 * size[k] - 2, 1.5 * size[k] + 2) : spread(state, -1.2, 1.2);
+    if (raw && field_random(state) < 0.4) at = 8 * rint(at / 8);
+    if (raw && field_random(state) < 0.1) at = field_random(state) < 0.5 ? -0.5 : size[k] - 0.5;
+    double d = spread(state, -1, 1);
+    if (kind == 1) d = specials[(int)(sizeof specials / sizeof *specials * field_random(state))];
+    if (kind == 2 && field_random(state) < 0.5) d = rint(d);
+    ray.origin[k] = (float)at;
+    ray.direction[k] = (float)(d * scale);
+  }
+  double near = spread(state, 0, 1) * (raw ? size[0] : 1) / scale;
+  if (field_random(state) < 0.3) ray.from = (float)near;
+  if (field_random(state) < 0.3) ray.to = (float)(ray.from + near);
+  return ray;
+}
+
 /* ---- device ---- */
 
-void grid_device_open(void) {
+int grid_device_open(void **state) {
+  (void)state;
   static char text[1 << 16];
   harness = harness_open("Portable");
   if (!harness) harness = harness_open(NULL);
@@ -127,9 +158,14 @@ void grid_device_open(void) {
   text[fread(text, 1, sizeof text - 1, file)] = 0;
   fclose(file);
   harness_build(harness, text);
+  return 0;
 }
 
-void grid_device_close(void) { harness_close(harness); }
+int grid_device_close(void **state) {
+  (void)state;
+  harness_close(harness);
+  return 0;
+}
 
 void grid_run(const char *kernel, size_t items, const GridSet *set, HarnessBuffer points,
               HarnessBuffer in, HarnessBuffer out) {

@@ -32,9 +32,13 @@ void grid_set_loosen(GridSet *set, float factor);
 
 void grid_set_free(GridSet *set);
 
-/* The device of all tests of grids. */
-void grid_device_open(void);
-void grid_device_close(void);
+/* Rays of all kinds about the set's first grid: anything, along axes and nearly so, from planes of
+ * bricks, of far-off lengths. `raw`: the world is its index space. */
+FieldRay grid_random_ray(uint32_t *state, const GridSet *set, int raw);
+
+/* The device of all tests of grids, as cmocka wants it. */
+int grid_device_open(void **state);
+int grid_device_close(void **state);
 
 /* Runs a kernel of grids.cl on the set's arrays and three further ones. */
 void grid_run(const char *kernel, size_t items, const GridSet *set, HarnessBuffer points,

@@ -26,6 +26,8 @@ static float kind_value(FieldKind kind, const uint32_t size[3], const uint32_t a
     return (at[0] / 8 + at[1] / 8 + at[2] / 8) % 2 ? (float)r : 0;
   case FIELD_SPARSE:
     return chance < 0.025 ? (float)r : 0;
+  case FIELD_RARE:
+    return chance < 2.5e-5 ? (float)r : 0;
   case FIELD_NOISE:
     return (float)r;
   default:

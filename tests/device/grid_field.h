@@ -13,6 +13,7 @@ typedef enum FieldKind {
   FIELD_STEP,    /* 1 in a box in the middle, 0 around it */
   FIELD_CHECKER, /* bricks in turns empty and random */
   FIELD_SPARSE,  /* one voxel in 40 random, the others 0 */
+  FIELD_RARE,    /* one voxel in 40000 */
   FIELD_NOISE,   /* every voxel random */
   FIELD_EMPTY,
   FIELD_KINDS

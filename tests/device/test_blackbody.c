@@ -135,18 +135,6 @@ static void test_table(void **state) {
   }
 }
 
-static int open_device(void **state) {
-  (void)state;
-  grid_device_open();
-  return 0;
-}
-
-static int close_device(void **state) {
-  (void)state;
-  grid_device_close();
-  return 0;
-}
-
 int main(void) {
   harness_prepare();
   const struct CMUnitTest tests[] = {
@@ -155,5 +143,5 @@ int main(void) {
       cmocka_unit_test(test_order),
       cmocka_unit_test(test_table),
   };
-  return cmocka_run_group_tests(tests, open_device, close_device);
+  return cmocka_run_group_tests(tests, grid_device_open, grid_device_close);
 }
