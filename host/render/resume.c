@@ -7,12 +7,13 @@
 
 static json_t *state_json(const cdl_Session *session) {
   const cdl_RenderStats *s = &session->stats;
-  return json_pack("{s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I}", "next_block",
+  return json_pack("{s:I, s:I, s:f, s:f, s:I, s:I, s:I, s:I, s:I, s:I, s:I}", "next_block",
                    (json_int_t)session->next_block, "next_pixel", (json_int_t)session->next_pixel,
                    "render_s", s->render_s, "render_cpu_s", s->render_cpu_s, "paths",
                    (json_int_t)s->paths, "rays_camera", (json_int_t)s->rays_camera, "rays_bounce",
                    (json_int_t)s->rays_bounce, "rays_shadow", (json_int_t)s->rays_shadow,
-                   "bad_samples", (json_int_t)s->bad_samples);
+                   "real_collisions", (json_int_t)s->real_collisions, "null_collisions",
+                   (json_int_t)s->null_collisions, "bad_samples", (json_int_t)s->bad_samples);
 }
 
 static uint64_t count(const json_t *state, const char *name) {
@@ -38,6 +39,8 @@ static void state_apply(cdl_Session *session, const json_t *state) {
   s->rays_camera = count(state, "rays_camera");
   s->rays_bounce = count(state, "rays_bounce");
   s->rays_shadow = count(state, "rays_shadow");
+  s->real_collisions = count(state, "real_collisions");
+  s->null_collisions = count(state, "null_collisions");
   s->bad_samples = count(state, "bad_samples");
 }
 

@@ -235,6 +235,8 @@ static cdl_Status render_tile(cdl_Session *session, const Pass *pass, uint32_t t
   session->stats.rays_camera += counts.camera_rays;
   session->stats.rays_bounce += counts.bounce_rays;
   session->stats.rays_shadow += counts.shadow_rays;
+  session->stats.real_collisions += counts.real_collisions;
+  session->stats.null_collisions += counts.null_collisions;
   session->stats.bad_samples += counts.bad_samples;
   session->next_pixel += width * height;
   return CDL_OK;

@@ -15,7 +15,8 @@ typedef struct cdl_RenderStats {
   double load_s, bvh_s, compile_s, upload_s, render_s, render_cpu_s, write_s;
   uint64_t paths;
   uint64_t rays_camera, rays_bounce, rays_shadow;
-  uint64_t bad_samples; /* not finite, counted as black */
+  uint64_t real_collisions, null_collisions; /* of paths in grids */
+  uint64_t bad_samples;                      /* not finite, counted as black */
   uint64_t triangles, instances, lights;
   char bvh_line[256]; /* bvh_statistics_line() */
 } cdl_RenderStats;

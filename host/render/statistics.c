@@ -51,18 +51,20 @@ static json_int_t peak_rss_bytes(void) {
 
 json_t *statistics_of_session(const cdl_Session *session) {
   const cdl_RenderStats *s = &session->stats;
-  json_t *json = json_pack(
-      "{s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:I, s:s, s:o, s:I, s:{s:I, s:I, s:I}, s:I, s:I, s:I, "
-      "s:b}",
-      "version", CDL_VERSION, "scene", session->scene->path, "scene_sha256", session->scene->sha256,
-      "device", device_json(session), "settings", settings_json(session), "triangles",
-      (json_int_t)s->triangles, "instances", (json_int_t)s->instances, "lights",
-      (json_int_t)s->lights, "bvh", s->bvh_line, "times", times_json(session), "paths",
-      (json_int_t)s->paths, "rays", "camera", (json_int_t)s->rays_camera, "bounce",
-      (json_int_t)s->rays_bounce, "shadow", (json_int_t)s->rays_shadow, "bad_samples",
-      (json_int_t)s->bad_samples, "device_peak_bytes",
-      (json_int_t)device_peak_allocated(session->device), "peak_rss_bytes", peak_rss_bytes(),
-      "interrupted", session->interrupted);
+  json_t *json =
+      json_pack("{s:s, s:s, s:s, s:o, s:o, s:I, s:I, s:I, s:s, s:o, s:I, s:{s:I, s:I, s:I}, "
+                "s:{s:I, s:I}, s:I, s:I, "
+                "s:I, s:b}",
+                "version", CDL_VERSION, "scene", session->scene->path, "scene_sha256",
+                session->scene->sha256, "device", device_json(session), "settings",
+                settings_json(session), "triangles", (json_int_t)s->triangles, "instances",
+                (json_int_t)s->instances, "lights", (json_int_t)s->lights, "bvh", s->bvh_line,
+                "times", times_json(session), "paths", (json_int_t)s->paths, "rays", "camera",
+                (json_int_t)s->rays_camera, "bounce", (json_int_t)s->rays_bounce, "shadow",
+                (json_int_t)s->rays_shadow, "collisions", "real", (json_int_t)s->real_collisions,
+                "null", (json_int_t)s->null_collisions, "bad_samples", (json_int_t)s->bad_samples,
+                "device_peak_bytes", (json_int_t)device_peak_allocated(session->device),
+                "peak_rss_bytes", peak_rss_bytes(), "interrupted", session->interrupted);
   json_t *kernels = session->profile ? profile_json(session->profile) : json_array();
   if (!json || json_object_set_new(json, "kernels", kernels) ||
       statistics_finish(json, session->film)) {
@@ -152,5 +154,6 @@ void statistics_add(json_t *sum, const json_t *part) {
   sum_member(sum, part, "bad_samples");
   sum_members(json_object_get(sum, "times"), json_object_get(part, "times"));
   sum_members(json_object_get(sum, "rays"), json_object_get(part, "rays"));
+  sum_members(json_object_get(sum, "collisions"), json_object_get(part, "collisions"));
   add_kernels(json_object_get(sum, "kernels"), json_object_get(part, "kernels"));
 }

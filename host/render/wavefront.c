@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "abi/film.h"
+#include "abi/grid.h"
 #include "core/clock.h"
 #include "core/log.h"
 #include "device/buffer.h"
@@ -146,6 +147,19 @@ static cdl_Status trace_paths(cdl_Wavefront *w, cdl_WaveCounts *counts) {
   return status;
 }
 
+/* Counts of 32 bits last for a wave. */
+static cdl_Status count_collisions(cdl_Wavefront *w, cdl_WaveCounts *counts) {
+  uint32_t words[2 * CDL_COLLISION_COUNTERS];
+  if (!w->features.grids) return CDL_OK;
+  cdl_Status status = buffer_read(&w->buffers[BUFFER_collisions], 0, sizeof words, words);
+  if (status) return status;
+  for (uint32_t i = 0; i < CDL_COLLISION_COUNTERS; i++) {
+    counts->real_collisions += words[2 * i];
+    counts->null_collisions += words[2 * i + 1];
+  }
+  return buffer_fill(&w->buffers[BUFFER_collisions], 0, sizeof words, 0);
+}
+
 /* Hands the block sums of a wave to the film, row by row of the rectangle. */
 static cdl_Status add_to_film(const cdl_Wavefront *w, const float *sums, cdl_Film *film) {
   const cdl_Wave *wave = &w->wave;
@@ -199,5 +213,6 @@ cdl_Status wavefront_run(cdl_Wavefront *w, uint32_t x, uint32_t y, uint32_t widt
   w->wave.live =
       (w->wave.path_count + CDL_QUEUE_ALIGNMENT - 1) / CDL_QUEUE_ALIGNMENT * CDL_QUEUE_ALIGNMENT;
   cdl_Status status = trace_paths(w, counts);
+  if (!status) status = count_collisions(w, counts);
   return status ? status : develop(w, film, counts);
 }

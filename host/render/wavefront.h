@@ -13,7 +13,8 @@
 /* What a wave came to. */
 typedef struct cdl_WaveCounts {
   uint64_t camera_rays, bounce_rays, shadow_rays;
-  uint64_t bad_samples; /* channels of samples that were not finite */
+  uint64_t real_collisions, null_collisions; /* of paths in grids */
+  uint64_t bad_samples;                      /* channels of samples that were not finite */
 } cdl_WaveCounts;
 
 typedef struct cdl_Wavefront cdl_Wavefront;

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "abi/film.h"
+#include "abi/grid.h"
 #include "core/clock.h"
 #include "core/log.h"
 #include "device/program.h"
@@ -232,6 +233,7 @@ static cdl_Status make_wave_buffers(cdl_Wavefront *w) {
       {BUFFER_sources, entries},
       {BUFFER_sums, sums},
       {BUFFER_bad_samples, sums},
+      {BUFFER_collisions, 2 * CDL_COLLISION_COUNTERS},
   };
   cdl_Status status = CDL_OK;
   for (size_t i = 0; i < sizeof sizes / sizeof *sizes && !status; i++) {

@@ -12,7 +12,7 @@
   B(triangles) B(shapes) B(attributes) B(materials) B(param_textures) B(textures) B(texels) \
   B(srgb) B(lights) B(light_table) B(environment) B(environment_cells) B(media) \
   B(grids) B(grid_table) B(grid_most) B(grid_values) B(blackbody) B(energy_table) B(film_channels) B(path_a) B(path_b) B(work) B(slots) B(counts) B(ranges) \
-  B(sources) B(sums) B(bad_samples)
+  B(sources) B(sums) B(bad_samples) B(collisions)
 /* clang-format on */
 
 typedef enum BufferId {

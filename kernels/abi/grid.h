@@ -30,6 +30,10 @@ typedef struct cdl_Grid {
 } cdl_Grid;
 CDL_ABI_SIZE(cdl_Grid, 48);
 
+/* Collisions are counted in as many places, so that paths seldom meet at one; even words count real
+ * ones, odd words null ones. */
+#define CDL_COLLISION_COUNTERS 64u
+
 /* Radiance of black bodies in linear sRGB by temperature, as the table `blackbody` has it: every
  * CDL_BLACKBODY_STEP kelvin from 0 on, 3 floats each. */
 #define CDL_BLACKBODY_STEP 4.0f

@@ -11,7 +11,8 @@ __kernel void sample_grid(CDL_CONSTANT cdl_Params *restrict params,
                           CDL_GLOBAL const cdl_Grid *grids, CDL_GLOBAL const uint *grid_table,
                           CDL_GLOBAL const float *grid_most, CDL_GLOBAL const float *grid_values,
                           CDL_GLOBAL const float *blackbody, CDL_GLOBAL uint *path,
-                          CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
+                          CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots,
+                          volatile CDL_GLOBAL uint *collisions) {
   size_t i = get_global_id(0);
   size_t stride = wave->stride;
   uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
@@ -34,6 +35,9 @@ __kernel void sample_grid(CDL_CONSTANT cdl_Params *restrict params,
                                state_float(path, CDL_PATH_HIT_T, stride, i),
                                state_vec3(path, CDL_PATH_THROUGHPUT, stride, i), first, &stream,
                                blackbody, grids, grid_table, grid_most, grid_values);
+  size_t counter = 2u * (i % CDL_COLLISION_COUNTERS);
+  atomic_add(collisions + counter, flight.real);
+  atomic_add(collisions + counter + 1u, flight.null);
   state_add_radiance(slots, wave->slots, slot, flight.glow);
   state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, flight.throughput);
   if (!flight.scattered) return;
