@@ -157,25 +157,35 @@ def test_glowing_medium():
         exact("a glowing %s slab" % name, straight(s), (0.5, 1, 2) * length)
 
 
-def phase(cosine, g):
-    """Henyey and Greenstein; the cosine is 1 straight on."""
-    return (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * cosine) ** 1.5)
+def phase(cosine, g, alpha=0):
+    """Draine's, and with alpha 0 Henyey and Greenstein's; the cosine is 1 straight on."""
+    hg = (1 - g * g) / (4 * np.pi * (1 + g * g - 2 * g * cosine) ** 1.5)
+    return hg * (1 + alpha * cosine * cosine) / (1 + alpha * (1 + 2 * g * g) / 3)
+
+
+# with their values where light turns to a cosine of -0.8
+PHASES = (({"type": "hg", "g": 0.6}, phase(-0.8, 0.6)),
+          ({"type": "hg", "g": -0.4}, phase(-0.8, -0.4)),
+          ({"type": "rayleigh"}, 3 / (16 * np.pi) * 1.64),
+          ({"type": "draine", "g": 0.5, "alpha": 12}, phase(-0.8, 0.5, 12)),
+          ({"type": "two_term_hg", "g": [0.8, -0.6], "weight": 0.3},
+           0.7 * phase(-0.8, 0.8) + 0.3 * phase(-0.8, -0.6)))
 
 
 def test_single_scattering():
     """A slab under a distant light, one event: the light enters at 1 / mu per metre of depth,
     the view straight; L = E p s_s (1 - exp(-(1 + 1 / mu) s_t d)) / ((1 + 1 / mu) s_t)."""
     scattering, absorption, depth = np.array((0.2, 0.5, 1.0)), np.array((0.1, 0.3, 0.05)), 0.8
-    for g in (0.6, -0.4):
+    for function, value in PHASES:
         s = stage(0)
         s.add(slab(-depth, 0), s.interface({"scattering": list(scattering), "absorption":
-                                            list(absorption), "phase": {"type": "hg", "g": g}}))
+                                            list(absorption), "phase": function}))
         s.light("directional", 5, look_at((3, 0, 4), (0, 0, 0)))  # mu = 0.8
         picture = straight(s, size=(16, 16), spp=2048, depth=1)
         total, way = scattering + absorption, 1 + 1 / 0.8
         # Seen from +Z, the light turns by the angle between (-0.6, 0, -0.8) and +Z.
-        want = 5 * phase(-0.8, g) * scattering * (1 - np.exp(-way * total * depth)) / (way * total)
-        agrees("single scattering, g = %g" % g, picture, want)
+        want = 5 * value * scattering * (1 - np.exp(-way * total * depth)) / (way * total)
+        agrees("single scattering, %s" % function, picture, want)
 
 
 def test_forward_scattering():
@@ -189,11 +199,14 @@ def test_forward_scattering():
 
 def test_white_medium():
     """Scattering without absorption, under a sky of 1: invisible, whatever its shape and phase."""
-    for g, shape in ((0.0, box((-1, -1, -1), (1, 1, 1))), (0.8, sphere(1, columns=16, rows=8))):
+    cube = box((-1, -1, -1), (1, 1, 1))
+    for function, shape in (({"type": "hg", "g": 0.0}, cube),
+                            ({"type": "hg", "g": 0.8}, sphere(1, columns=16, rows=8)),
+                            ({"type": "droplets", "diameter": 12}, cube)):
         s = stage()
-        s.add(shape, s.interface({"scattering": [0.5, 1, 2], "phase": {"type": "hg", "g": g}}))
+        s.add(shape, s.interface({"scattering": [0.5, 1, 2], "phase": function}))
         s.camera(look_at((2, 3, 4), (0, 0, 0)), half_height=0.5)
-        agrees("a white cloud, g = %g" % g, render(s, (32, 32), 1280, 1000), 1)
+        agrees("a white cloud, %s" % function, render(s, (32, 32), 1280, 1000), 1)
 
 
 def test_glass_slab():
