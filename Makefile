@@ -132,7 +132,7 @@ run-host: $(HOST_PROGRAMS)
 # --- Benchmarks: scripts/bench_NAME.c(pp) is a program that may use Embree.
 
 BENCH_SOURCES := $(wildcard scripts/bench_*.c scripts/bench_*.cpp)
-BENCH_PROGRAMS := $(patsubst scripts/%,$(B)/bench/%,$(basename $(BENCH_SOURCES)))
+BENCH_PROGRAMS := $(sort $(patsubst scripts/%,$(B)/bench/%,$(basename $(BENCH_SOURCES))))
 
 $(BENCH_PROGRAMS): $(B)/bench/%: $$(patsubst $$(percent),$(B)/obj/$$(percent).o,$$(wildcard scripts/$$*.c scripts/$$*.cpp)) \
   $(B)/libcandela.a

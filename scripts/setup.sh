@@ -7,7 +7,7 @@ build="gcc g++ make pkg-config pocl-opencl-icd ocl-icd-opencl-dev opencl-c-heade
   libopenimageio-dev libpng-dev libtinygltf-dev nlohmann-json3-dev libstb-dev libjansson-dev nettle-dev
   libdraco-dev libmeshoptimizer-dev libopenvdb-dev libboost-dev"
 test="libcmocka-dev mesa-opencl-icd oclgrind python3 python3-numpy"
-bench="libembree-dev python3"
+bench="libembree-dev libnanovdb-dev python3"
 check="clang-format cppcheck"
 
 [ $# -gt 0 ] || set -- build test bench check
