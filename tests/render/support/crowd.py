@@ -149,9 +149,11 @@ def fog():
     s.medium(scattering=[0.1, 0.12, 0.15], absorption=[0.02, 0.01, 0.01],
              phase={"type": "hg", "g": -0.3})
     s.add(quad((0, -1, 0), (0, 0, 4), (4, 0, 0)), s.diffuse((0.5, 0.5, 0.6)))
-    cloud = s.interface({"scattering": [3, 2, 1], "phase": {"type": "hg", "g": 0.8}})
+    cloud = s.interface({"scattering": [3, 2, 1], "phase": {"type": "droplets", "diameter": 12}})
     s.add(sphere(0.8, (-0.5, 0, 0), 12, 6), cloud)
-    s.add(sphere(0.6, (0.3, 0.1, 0.2), 12, 6), s.interface({"absorption": [0.3, 1, 2]}))
+    s.add(sphere(0.6, (0.3, 0.1, 0.2), 12, 6),
+          s.interface({"absorption": [0.3, 1, 2], "scattering": 0.5,
+                       "phase": {"type": "rayleigh"}}))
     s.add(sphere(0.3, (-0.6, 0, 0), 12, 6), s.interface())
     s.add(sphere(0.5, (1.2, -0.4, 0.5), 12, 6, smooth=True),
           s.material({"model": "dielectric", "ior": 1.33}, {"absorption": [1, 0.3, 0.1]}))
