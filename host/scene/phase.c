@@ -32,8 +32,8 @@ static void henyey_and_draine(cdl_ScenePhase *phase, float hg, float draine, flo
 }
 
 /* Droplets of water in air by their diameter d in micrometres, 0 < d <= 50: the fits of Jendersie
- * and d'Eon 2023, An Approximate Mie Scattering Function for Fog and Cloud Rendering, those for 5
- * to 50 (equations 4 to 7) and those for small ones of its supplement. */
+ * and d'Eon 2023, An Approximate Mie Scattering Function for Fog and Cloud Rendering, which change
+ * at 0.1, 1.5 and 5. */
 static void fit_large(float d, cdl_ScenePhase *phase) {
   henyey_and_draine(phase, math_exp(-0.0990567f / (d - 1.67154f)),
                     math_exp(-2.20679f / (d + 3.91029f) - 0.428934f),

@@ -87,7 +87,7 @@ CDL_INLINE float phase_value(Phase phase, float cosine) {
  * F(x) = integral of 1 + alpha cos^2 from 0 to x
  *      = x (1 + alpha ((1 - (1 - g) x q)^2 + (1 - g^2) q (x q)^2 / 3)),
  * again without cancellation. F(x) = u N is a quartic in x q (and a cubic for g = 0). Its closed
- * form (Jendersie and d'Eon 2023, supplement) divides by g and subtracts what is nearly equal;
+ * form (Jendersie and d'Eon 2023) divides by g and subtracts what is nearly equal;
  * floats do not bear that. Here a cubic that agrees with F at its inflection, cos = 0, and at the
  * nearer end is solved instead, which is exact for g = 0, and three steps of Householder's method
  * of the third order lead to the root. They leave an error in u of at most 5e-7, and of 2e-6 for
