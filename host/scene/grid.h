@@ -41,6 +41,7 @@ typedef struct cdl_SceneGrid {
   float minimum, maximum; /* of all voxels of the box, over all channels */
   uint64_t active;        /* voxels that the file marks so */
   int32_t low[3];         /* the file's index of voxel (0, 0, 0) */
+  int whole;              /* 1: the box is the file's own, not that of another grid */
   double to_index[12];    /* from the file's space to index space, 3x4, row-major */
 } cdl_SceneGrid;
 
@@ -86,7 +87,7 @@ cdl_Status grid_build(const GridSource *source, const int32_t low[3], const uint
 
 void grid_free(cdl_SceneGrid *grid);
 
-/* Bytes that a grid takes on the host, and as much on a device. */
+/* Bytes that a grid takes in memory. */
 uint64_t grid_memory(const cdl_SceneGrid *grid);
 
 #ifdef __cplusplus

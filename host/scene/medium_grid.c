@@ -16,10 +16,9 @@
 
 typedef struct Volume {
   Builder *builder;
-  const char *pointer, *file; /* the JSON of the grid, and its file as messages name it */
-  Bytes bytes;
+  const char *pointer, *uri, *file; /* the JSON of the grid, and its file as messages name it */
+  Bytes bytes;                      /* read when a grid is not there yet */
   cdl_SceneMedium *medium;
-  double to_world[12]; /* of the density */
 } Volume;
 
 static cdl_Status refuse(const Volume *volume, const char *member, const char *grid,
@@ -42,15 +41,17 @@ static void note_values(const Volume *volume, const char *member, const char *gr
                   volume->file, grid, background);
 }
 
-/* The grid that is there already; CDL_NONE: there is none. */
-static uint32_t find_grid(const Volume *volume, const char *name, const int32_t low[3],
-                          const uint32_t size[3]) {
+/* The grid that is there already, over its own box or that of `like`; CDL_NONE: there is none. What
+ * a data URI holds is not compared. */
+static uint32_t find_grid(const Volume *volume, const char *name, const cdl_SceneGrid *like) {
   const struct cdl_Scene *scene = volume->builder->scene;
+  if (volume->file != volume->uri) return CDL_NONE;
   for (uint32_t i = 0; i < scene->grid_count; i++) {
     const cdl_SceneGrid *grid = &scene->grids[i];
-    if (strcmp(grid->file, volume->file) == 0 && strcmp(grid->name, name) == 0 &&
-        memcmp(grid->low, low, sizeof grid->low) == 0 &&
-        memcmp(grid->size, size, sizeof grid->size) == 0)
+    if (strcmp(grid->file, volume->file) != 0 || strcmp(grid->name, name) != 0) continue;
+    if (like ? memcmp(grid->low, like->low, sizeof grid->low) == 0 &&
+                   memcmp(grid->size, like->size, sizeof grid->size) == 0
+             : grid->whole)
       return i;
   }
   return CDL_NONE;
@@ -62,6 +63,8 @@ static int index_space(const double to_world[12], const int32_t low[3], double t
   memcpy(world.m, to_world, sizeof world.m);
   if (!matrix_invert(&world, &index)) return 0;
   for (int k = 0; k < 3; k++) index.m[4 * k + 3] -= low[k];
+  for (int i = 0; i < 12; i++)
+    if (!isfinite(index.m[i])) return 0;
   memcpy(to_index, index.m, sizeof index.m);
   return 1;
 }
@@ -72,8 +75,6 @@ static cdl_Status add_grid(const Volume *volume, const char *member, const char 
   struct cdl_Scene *scene = volume->builder->scene;
   Document *doc = volume->builder->doc;
   const char *why = NULL;
-  *index = find_grid(volume, name, low, size);
-  if (*index != CDL_NONE) return CDL_OK;
   cdl_SceneGrid *grid = array_push((void **)&scene->grids, scene->grid_count, sizeof *grid);
   if (!grid) return document_out_of_memory(doc);
   *index = scene->grid_count++;
@@ -87,10 +88,22 @@ static cdl_Status add_grid(const Volume *volume, const char *member, const char 
   return document_charge(doc, volume->pointer, grid_memory(grid));
 }
 
-static cdl_Status read_source(const Volume *volume, const char *member, const char *name,
+static cdl_Status read_file(Volume *volume) {
+  Document *doc = volume->builder->doc;
+  if (volume->bytes.data) return CDL_OK;
+  cdl_Status status =
+      document_read_uri(doc, AT("%.200s/uri", volume->pointer), volume->uri, &volume->bytes, NULL);
+  if (!status) doc->decode_left += GROWTH * volume->bytes.size;
+  return status;
+}
+
+static cdl_Status read_source(Volume *volume, const char *member, const char *name,
                               GridSource *source) {
   char why[512];
   double background;
+  *source = (GridSource){0};
+  cdl_Status status = read_file(volume);
+  if (status) return status;
   size_t room = volume->builder->doc->decode_left;
   if (vdb_load(volume->bytes.data, volume->bytes.size, name, room, source, &background, why))
     return refuse(volume, member, name, why);
@@ -100,15 +113,15 @@ static cdl_Status read_source(const Volume *volume, const char *member, const ch
 
 static cdl_Status read_density(Volume *volume, const char *name) {
   GridSource source;
-  uint32_t size[3];
+  uint32_t size[3], *index = &volume->medium->density;
+  *index = find_grid(volume, name, NULL);
+  if (*index != CDL_NONE) return CDL_OK;
   cdl_Status status = read_source(volume, "density", name, &source);
   if (!status && source.channels != 1)
     status = refuse(volume, "density", name, "it has three channels; a density has one");
-  if (status) goto done;
   for (int k = 0; k < 3; k++) size[k] = (uint32_t)(source.high[k] - source.low[k]) + 1;
-  memcpy(volume->to_world, source.to_world, sizeof source.to_world);
-  status = add_grid(volume, "density", name, &source, source.low, size, &volume->medium->density);
-done:
+  if (!status) status = add_grid(volume, "density", name, &source, source.low, size, index);
+  if (!status) volume->builder->scene->grids[*index].whole = 1;
   grid_source_free(&source);
   return status;
 }
@@ -119,38 +132,36 @@ static int same_space(const cdl_SceneGrid *density, const double to_world[12]) {
   memcpy(index.m, density->to_index, sizeof index.m);
   memcpy(other.m, to_world, sizeof other.m);
   Matrix both = matrix_multiply(&index, &other);
-  double most = 0;
   for (int corner = 0; corner < 8; corner++) {
     double voxel[3], moved[3];
     for (int k = 0; k < 3; k++)
       voxel[k] = density->low[k] + (corner >> k & 1 ? density->size[k] : 0.0);
     matrix_apply(&both, voxel, 1, moved);
-    for (int k = 0; k < 3; k++) most = fmax(most, fabs(moved[k] - (voxel[k] - density->low[k])));
+    for (int k = 0; k < 3; k++)
+      if (!(fabs(moved[k] - (voxel[k] - density->low[k])) < 1e-3)) return 0;
   }
-  return most < 1e-3;
+  return 1;
 }
 
 /* A further grid, over the box of the density. */
-static cdl_Status read_other(const Volume *volume, const char *member, const char *name,
+static cdl_Status read_other(Volume *volume, const char *member, const char *name,
                              uint32_t channels, uint32_t *index) {
   GridSource source;
   if (!name) return CDL_OK;
+  /* A copy: adding a grid moves the others. */
+  const cdl_SceneGrid density = volume->builder->scene->grids[volume->medium->density];
+  *index = find_grid(volume, name, &density);
+  if (*index != CDL_NONE && volume->builder->scene->grids[*index].channels == channels)
+    return CDL_OK;
   cdl_Status status = read_source(volume, member, name, &source);
-  const cdl_SceneGrid *density = &volume->builder->scene->grids[volume->medium->density];
   if (!status && source.channels != channels)
     status = refuse(volume, member, name,
                     channels == 1 ? "it has three channels; a temperature has one"
                                   : "it has one channel; a colour has three");
-  if (!status && !same_space(density, source.to_world))
+  if (!status && !same_space(&density, source.to_world))
     status = refuse(volume, member, name,
                     "its transform is not that of the density; resample it to the same voxels");
-  if (!status) {
-    int32_t low[3];
-    uint32_t size[3];
-    memcpy(low, density->low, sizeof low);
-    memcpy(size, density->size, sizeof size);
-    status = add_grid(volume, member, name, &source, low, size, index);
-  }
+  if (!status) status = add_grid(volume, member, name, &source, density.low, density.size, index);
   grid_source_free(&source);
   return status;
 }
@@ -211,13 +222,10 @@ cdl_Status build_medium_grid(Builder *builder, const char *pointer, const json_t
   if (!json || builder->shapes_only) return CDL_OK;
   Volume volume = {.builder = builder,
                    .pointer = AT("%.200s/grid", pointer),
+                   .uri = uri,
                    .file = inside ? "data URI" : uri,
                    .medium = medium};
-  cdl_Status status =
-      document_read_uri(builder->doc, AT("%.200s/uri", volume.pointer), uri, &volume.bytes, NULL);
-  if (status) return status;
-  builder->doc->decode_left += GROWTH * volume.bytes.size;
-  status = read_grids(&volume, json);
+  cdl_Status status = read_grids(&volume, json);
   free(volume.bytes.owned);
   return status;
 }
