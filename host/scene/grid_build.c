@@ -221,6 +221,24 @@ static cdl_Status fill_bricks(const GridSource *source, cdl_SceneGrid *grid,
   return CDL_OK;
 }
 
+/* Stops as soon as more bricks must be stored than there is room for. */
+static cdl_Status survey_all(const GridSource *source, cdl_SceneGrid *grid, size_t count,
+                             size_t room) {
+  size_t stored = 0, most = room / (GRID_VALUES * grid->channels * sizeof *grid->values);
+#pragma omp parallel for schedule(dynamic, 64) if (count > FEW)
+  for (size_t i = 0; i < count; i++) {
+    size_t so_far;
+#pragma omp atomic read
+    so_far = stored;
+    if (so_far > most) continue;
+    survey(source, grid, i);
+    if (grid->table[i] != STORED) continue;
+#pragma omp atomic
+    stored++;
+  }
+  return stored > most ? CDL_BAD_INPUT : CDL_OK;
+}
+
 static void find_range(cdl_SceneGrid *grid, size_t count) {
   grid->minimum = FLT_MAX, grid->maximum = 0;
   for (size_t i = 0; i < count; i++) {
@@ -257,8 +275,7 @@ cdl_Status grid_build(const GridSource *source, const int32_t low[3], const uint
   *why = "there is not enough memory for it";
   cdl_Status status = prepare(source, low, size, room, grid, &count, why);
   if (status) return status;
-#pragma omp parallel for schedule(dynamic, 64) if (count > FEW)
-  for (size_t i = 0; i < count; i++) survey(source, grid, i);
+  if (survey_all(source, grid, count, room)) return refuse_size(why);
   find_range(grid, count);
   uint32_t *entries = malloc((count + 1) * sizeof *entries);
   if (!entries) return CDL_BAD_INPUT;
