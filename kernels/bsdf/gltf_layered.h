@@ -150,7 +150,7 @@ CDL_INLINE GltfChoice gltf_choose(GltfLayeredParams p, vec3 wo) {
  * of wi when visible normals are sampled and all refract (Walter et al. 2007, eqs. 16, 17 and 21).
  */
 typedef struct GltfRefraction {
-  float cos_h;
+  float outer; /* cosine of the facet to the direction outside */
   float f_cos, pdf;
   float pad0, pad1;
 } GltfRefraction;
@@ -168,7 +168,7 @@ CDL_INLINE GltfRefraction gltf_refraction(GltfLayeredParams p, vec3 wo, vec3 wi)
   float visible = microfacet_visible_density(d, g_o, cos_o, math_max(wo.z, 1e-9f));
   float denominator = math_max(math_sqr(fma(-p.eta, cos_i, cos_o)), 1e-20f);
   float jacobian = p.eta * p.eta * cos_i / denominator;
-  lobe.cos_h = math_clamp(cos_o, 0.0f, 1.0f);
+  lobe.outer = math_clamp(p.outside ? cos_o : cos_i, 0.0f, 1.0f);
   lobe.pdf = refracts ? visible * jacobian : 0.0f;
   lobe.f_cos = lobe.pdf * g_i / (p.eta * p.eta);
   lobe.pad0 = 0.0f;
@@ -217,7 +217,7 @@ CDL_INLINE BsdfValue gltf_passed(GltfLayeredParams p, GltfChoice choice, vec3 wo
   BsdfValue value = scattered;
   if (GLTF_TRANSMISSION) {
     GltfRefraction refraction = gltf_refraction(p, wo, v3(up.x, up.y, -up.z));
-    GltfFacet facet = gltf_facet(p, p.solid ? refraction.cos_h : lobe.cos_h);
+    GltfFacet facet = gltf_facet_outside(p, p.solid ? refraction.outer : lobe.cos_h);
     float rough = p.smooth ? 0.0f : 1.0f;
     float f_cos = rough * (p.solid ? refraction.f_cos : lobe.f_cos);
     float pdf = rough * (p.solid ? refraction.pdf : lobe.pdf);
@@ -307,6 +307,7 @@ CDL_INLINE GltfFacetSample gltf_sample_facets(GltfLayeredParams p, GltfChoice ch
   s.wi = gltf_turn_back(p, wi);
   if (GLTF_CLEARCOAT) s.wi = v3_select(coated, frame_to_world(coat, wi), s.wi);
   s.valid = s.transmitted ? s.wi.z < 0.0f : s.wi.z > 0.0f;
+  s.valid = s.valid && (!coated || wi.z > 0.0f); /* above the coat's own plane */
   return s;
 }
 

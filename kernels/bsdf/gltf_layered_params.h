@@ -243,10 +243,9 @@ CDL_INLINE GltfAngle gltf_angle(GltfLayeredParams p, float cosine) {
   return angle;
 }
 
-/* Facets at cos_h to wo. */
-CDL_INLINE GltfFacet gltf_facet(GltfLayeredParams p, float cos_h) {
+/* Facets at an angle. */
+CDL_INLINE GltfFacet gltf_facet_at(GltfLayeredParams p, GltfAngle angle) {
   GltfFacet facet;
-  GltfAngle angle = gltf_angle(p, cos_h);
   ThinFilm film = gltf_film(p, angle.cosine);
   vec3 dielectric = gltf_fresnel_at(p, film, p.f0, p.f90, angle.cosine);
   dielectric = v3_select(angle.total, v3_all(1.0f), dielectric);
@@ -255,6 +254,18 @@ CDL_INLINE GltfFacet gltf_facet(GltfLayeredParams p, float cos_h) {
   facet.rest = (1.0f - p.metallic) * (1.0f - v3_max(dielectric));
   facet.pad = 0.0f;
   return facet;
+}
+
+/* Facets at cos_h to wo. */
+CDL_INLINE GltfFacet gltf_facet(GltfLayeredParams p, float cos_h) {
+  return gltf_facet_at(p, gltf_angle(p, cos_h));
+}
+
+/* Facets that refract, by the cosine on the outer side: it is at hand there, and would cancel if it
+ * were worked out from the inner one near the critical angle. */
+CDL_INLINE GltfFacet gltf_facet_outside(GltfLayeredParams p, float cos_h) {
+  GltfAngle angle = {cos_h, 0, 0.0f, 0.0f, 0.0f};
+  return gltf_facet_at(p, angle);
 }
 
 /* ---- what the dielectric's specular lobe reflects in all ---- */
