@@ -25,6 +25,11 @@ def cdl(model, **fixed):
     return lambda **swept: {"model": {"model": model, **fixed, **swept}}
 
 
+def filled(**fixed):
+    """An interface around a CDL_medium."""
+    return lambda **swept: {"model": {"model": "interface"}, "medium": {**fixed, **swept}}
+
+
 def khr(pbr=None, **extensions):
     """Materials of glTF's own model: each extension's members; swept ones are named
     extension__member, or member for those of pbrMetallicRoughness."""
@@ -97,6 +102,28 @@ GALLERY = [
          sweep("ior", (1.05, 1.2, 1.5, 2, 2.5, 3))),
         ("reflectance", cdl("plastic", alpha=0.1),
          sweep("reflectance", [[r] * 3 for r in (0, 0.2, 0.5, 0.8, 1)]))]),
+    ("subsurface", [
+        ("albedo", cdl("subsurface", radius=0.05),
+         sweep("albedo", [[a] * 3 for a in (0.1, 0.4, 0.7, 0.95)])),
+        ("radius, m", cdl("subsurface", albedo=[0.9, 0.6, 0.45]),
+         sweep("radius", (0.005, 0.03, 0.1, 0.3, 1))),
+        ("radius by channel", cdl("subsurface", albedo=[0.85, 0.6, 0.5], alpha=0.2),
+         sweep("radius", [[0.1, 0.05, 0.03], [0.3, 0.1, 0.05], [0.6, 0.12, 0.04]])),
+        ("alpha", cdl("subsurface", albedo=[0.9, 0.85, 0.7], radius=0.1),
+         sweep("alpha", (0, 0.1, 0.3, 0.6, 1))),
+        ("ior", cdl("subsurface", albedo=[0.9, 0.85, 0.7], radius=0.1, alpha=0.1),
+         sweep("ior", (1, 1.2, 1.4, 1.8)))]),
+    ("media in an interface", [
+        ("scattering, 1/m", filled(), [("%g" % s, {"scattering": s}) for s in (0.3, 1, 3, 10)]),
+        ("absorption over scattering", filled(scattering=3),
+         [("%g" % a, {"absorption": a}) for a in (0, 0.5, 2, 8)]),
+        ("phase function", filled(scattering=2), [
+            (name, {"phase": phase}) for name, phase in (
+                ("isotropic", {"type": "isotropic"}), ("hg 0.8", {"type": "hg", "g": 0.8}),
+                ("hg -0.8", {"type": "hg", "g": -0.8}), ("rayleigh", {"type": "rayleigh"}),
+                ("draine 0.6, 2", {"type": "draine", "g": 0.6, "alpha": 2}),
+                ("two_term_hg", {"type": "two_term_hg", "g": [0.9, -0.4], "weight": 0.3}),
+                ("droplets 15 um", {"type": "droplets", "diameter": 15}))])]),
     ("disney", [(name, cdl("disney", **{**DISNEY, **fixed}), sweep(name, values))
                 for name, values, fixed in (
                     ("metallic", UNIT, {}), ("roughness", UNIT, {}), ("specular", UNIT, {}),
@@ -174,6 +201,8 @@ def make_scene(make, tiles, path):
     for i, (_, swept) in enumerate(tiles):
         made = make(**swept)
         material = doc.material("ball %d" % i, pbr=made.get("pbr", ()), model=made.get("model"))
+        if "medium" in made:
+            doc.extend(doc.gltf["materials"][material], "CDL_medium", made["medium"])
         for name, value in made.get("extensions", {}).items():
             doc.extend(doc.gltf["materials"][material], name, value)
         doc.put(ball, material, at=((i - (len(tiles) - 1) / 2) * SPACING, 0, 0))
@@ -192,7 +221,7 @@ def render(args, make, tiles, folder):
     make_scene(make, tiles, scene)
     command = [os.environ.get("CANDELA", "build/candela"), "render", scene, "-o", picture,
                "--size", "%dx%d" % (args.tile * len(tiles), args.tile), "--spp", str(args.spp),
-               "--max-depth", "10", "--tonemap", "neutral", "--quiet"]
+               "--max-depth", "16", "--tonemap", "neutral", "--quiet"]
     if args.device:
         command += ["--device", args.device]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True)
