@@ -4,6 +4,8 @@
 #include "scene/vdb.h"
 
 #include <openvdb/openvdb.h>
+#include <tbb/global_control.h>
+#include <tbb/parallel_for.h>
 
 #include <openvdb/io/Archive.h>
 #include <openvdb/io/GridDescriptor.h>
@@ -306,6 +308,9 @@ void read_grid(const uint8_t *data, size_t size, const char *name, const VdbSink
 int vdb_prepare(void) {
   try {
     openvdb::initialize();
+    /* At its first use TBB looks for further libraries, which the cage does not allow. */
+    tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
+    tbb::parallel_for(0, 2, [](int) {});
     return 1;
   } catch (...) {
     return 0;
@@ -316,6 +321,8 @@ int vdb_read(const uint8_t *data, size_t size, const char *name, const VdbSink *
              char error[512]) {
   std::string why;
   try {
+    /* nor does it allow threads */
+    tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
     read_grid(data, size, name, sink);
     return 1;
   } catch (const Refused &refused) {
