@@ -296,7 +296,8 @@ void read_grid(const uint8_t *data, size_t size, const char *name, const VdbSink
                   "; save it without instancing"};
   for (const Type &type : types) {
     if (entry.type != type.name) continue;
-    openvdb::GridBase::Ptr grid = openvdb::GridBase::createGrid(entry.type);
+    /* Never freed, as the library would start threads for it; the process ends anyway. */
+    const auto &grid = *new openvdb::GridBase::Ptr(openvdb::GridBase::createGrid(entry.type));
     archive.read(entry, *grid);
     return type.send(*grid, sink);
   }

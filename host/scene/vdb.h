@@ -33,7 +33,8 @@ typedef struct VdbSink {
 
 /* vdb.cpp, which alone sees that library: reads the grid of that name from a file in memory. 0 when
  * that fails, with `error` set to words that end a line, or empty if the sink said stop. Nothing
- * is taken from the file on trust, but the library does: damage can bring the process down. */
+ * is taken from the file on trust, but the library does: damage can bring the process down. It is
+ * for a process that ends then: the grid stays in memory. */
 int vdb_read(const uint8_t *data, size_t size, const char *name, const VdbSink *sink,
              char error[512]);
 

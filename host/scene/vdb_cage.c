@@ -3,6 +3,7 @@
  * Damage can make the library write past its buffers, and so, if someone meant it to, do anything
  * that the process may. After this, that is to compute, to use memory, and to write to pipes that
  * are open already (seccomp filter mode). Where the system has no such thing, the limits remain. */
+#include <errno.h>
 #include <linux/audit.h>
 #include <linux/filter.h>
 #include <linux/seccomp.h>
@@ -25,8 +26,8 @@
 #define END(what) BPF_STMT(BPF_RET | BPF_K, what)
 #define ALLOW(call) BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, __NR_##call, 0, 1), END(SECCOMP_RET_ALLOW)
 
-/* Memory is taken by the C library, and by threads that it wakes; the rest is how a process reads
- * a clock, hears signals and ends. */
+/* Memory is what the C library takes; the rest is how a process reads a clock, hears signals and
+ * ends. All else fails, as if it were forbidden. */
 void vdb_cage(void) {
   struct sock_filter filter[] = {
       LOAD(arch),
@@ -48,7 +49,7 @@ void vdb_cage(void) {
       ALLOW(rt_sigreturn),
       ALLOW(exit),
       ALLOW(exit_group),
-      END(SECCOMP_RET_KILL_PROCESS),
+      END(SECCOMP_RET_ERRNO | EPERM),
   };
   struct sock_fprog program = {sizeof filter / sizeof *filter, filter};
   if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0)
