@@ -102,6 +102,26 @@ static void test_types(void **state) {
     }
 }
 
+/* As many leaves as a large file has: 20^3, read in more than one piece. */
+static void test_large(void **state) {
+  (void)state;
+  enum { SIDE = 160 };
+  float *large = malloc(sizeof(float) * SIDE * SIDE * SIDE);
+  assert_non_null(large);
+  for (uint32_t i = 0; i < SIDE * SIDE * SIDE; i++) large[i] = (float)(1 + i % 8191);
+  VdbGrid grid = {.name = "density", .type = "float", .size = {SIDE, SIDE, SIDE}, .values = large};
+  write_file("a.vdb", &grid, 1, VDB_BLOSC | VDB_MASK);
+  struct cdl_Scene *scene = scene_with("\"uri\":\"a.vdb\"");
+  if (!scene) print_message("%s", scene_errors);
+  assert_non_null(scene);
+  assert_int_equal(scene->grids[0].active, SIDE * SIDE * SIDE);
+  for (uint32_t i = 0; i < SIDE * SIDE * SIDE; i += 37)
+    assert_true(value_of(&scene->grids[0], 0, i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE) ==
+                large[i]);
+  scene_free(scene);
+  free(large);
+}
+
 static void check_point(const double matrix[12], const double from[3], const double to[3]) {
   Matrix m;
   double got[3];
@@ -269,9 +289,9 @@ static void test_info(void **state) {
 
 int main(void) {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(test_types),   cmocka_unit_test(test_transform),
-      cmocka_unit_test(test_bounds),  cmocka_unit_test(test_several),
-      cmocka_unit_test(test_refused), cmocka_unit_test(test_noted),
-      cmocka_unit_test(test_info)};
+      cmocka_unit_test(test_types),     cmocka_unit_test(test_large),
+      cmocka_unit_test(test_transform), cmocka_unit_test(test_bounds),
+      cmocka_unit_test(test_several),   cmocka_unit_test(test_refused),
+      cmocka_unit_test(test_noted),     cmocka_unit_test(test_info)};
   return cmocka_run_group_tests(tests, scene_folder_make, scene_folder_remove);
 }
