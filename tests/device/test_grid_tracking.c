@@ -13,7 +13,7 @@
 #include "tests/device/chi2.h"
 #include "tests/device/grid_device.h"
 
-enum { RAYS = 16, EACH = 8192, SAMPLES = RAYS * EACH, WEIGHT = 3 };
+enum { RAYS = 16, EACH = 4096, SAMPLES = RAYS * EACH, WEIGHT = 3 };
 
 /* A medium in a field, and the light that goes through it. */
 typedef struct Case {

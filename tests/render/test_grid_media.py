@@ -197,7 +197,7 @@ def test_constant_emission():
 
 
 def test_temperature():
-    """A black body of 1500 K has the luminance 1; temperatureScale makes kelvins of the file's unit."""
+    """A black body of 1500 K has the luminance 1; temperatureScale makes kelvins of the grid."""
     s = stage(0)
     filled(s, {"density": noise(9, 0.5), "temperature": np.full(SIZE, 0.5)}, emission=[1, 1, 1],
            grid={"temperatureScale": 3000})
