@@ -57,6 +57,12 @@ static cdl_Status check(const cdl_Log *log, const cdl_Scene *scene, uint32_t ind
                     "%s: material %u, '%s', is %s: it scatters no light; choose "
                     "another one",
                     scene->path, index, m->name, model);
+  if (m->model == CDL_MODEL_SUBSURFACE)
+    return log_fail(
+        log, CDL_USAGE,
+        "%s: material %u, '%s', sends light back from elsewhere than it came in, which no "
+        "BSDF says; choose another one",
+        scene->path, index, m->name);
   if (m->texture_count || m->base_texture.texture != CDL_NONE)
     log_note(log, "%s: material %u, '%s', has textures; they count as white here", scene->path,
              index, m->name);

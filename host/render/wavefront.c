@@ -106,11 +106,13 @@ static cdl_Status shade_models(cdl_Wavefront *w) {
 /* Light that vertices scatter: choose a light, weigh it, go on, and see whether it was visible. */
 static cdl_Status scatter(cdl_Wavefront *w) {
   uint32_t first_lit = CDL_QUEUE_MODELS + 2 * CDL_MODEL_FIRST_LIT;
+  uint32_t subsurface = CDL_QUEUE_MODELS + 2 * CDL_MODEL_SUBSURFACE;
   cdl_Status status = run_queues(w, CDL_KERNEL_medium_vertex, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
   if (!status && w->has_lights)
     status = run_queues(w, CDL_KERNEL_sample_light, first_lit, CDL_QUEUE_MEDIUM);
   if (!status) status = run_queues(w, CDL_KERNEL_pass, CDL_QUEUE_PASS, CDL_QUEUE_PASS);
   if (!status) status = shade_models(w);
+  if (!status) status = run_queues(w, CDL_KERNEL_probe_subsurface, subsurface, subsurface + 1);
   if (!status) status = run_queues(w, CDL_KERNEL_shade_medium, CDL_QUEUE_MEDIUM, CDL_QUEUE_MEDIUM);
   if (!status) status = run_queues(w, CDL_KERNEL_walk_subsurface, CDL_QUEUE_WALK, CDL_QUEUE_WALK);
   if (!status && w->has_lights)

@@ -43,6 +43,7 @@ static cdl_Status set_options(const cdl_Wavefront *w, int bvh_width) {
   add_option(options, sizeof options, f->passable, "CDL_PASSABLE");
   add_option(options, sizeof options, f->media, "CDL_MEDIA");
   add_option(options, sizeof options, f->grids, "CDL_GRIDS");
+  add_option(options, sizeof options, f->triangle_lights || f->punctual_lights, "CDL_NEAR_LIGHTS");
   add_option(options, sizeof options, !f->draine, "CDL_DRAINE=0");
   add_option(options, sizeof options, f->motion, "CDL_MOTION");
   add_option(options, sizeof options, !f->dispersion, "CDL_DISPERSION=0");
@@ -103,6 +104,7 @@ static void list_kernels(const cdl_Wavefront *w, KernelList *list) {
   list_add(list, models[CDL_MODEL_##model], CDL_KERNEL_shade_##name);
   CDL_SHADED_MODELS(SHADE_KERNEL)
 #undef SHADE_KERNEL
+  list_add(list, models[CDL_MODEL_SUBSURFACE], CDL_KERNEL_probe_subsurface);
   list_add(list, f->media, CDL_KERNEL_shade_medium);
   list_add(list, f->walks, CDL_KERNEL_walk_subsurface);
   list_add(list, w->has_lights, CDL_KERNEL_occlude);

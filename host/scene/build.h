@@ -56,6 +56,9 @@ cdl_Status build_gltf_layers(Builder *builder, uint32_t index, const json_t *jso
  * KHR_materials_volume_scatter; *index is CDL_NONE for none. */
 cdl_Status build_medium(Builder *builder, const char *pointer, const json_t *json, uint32_t *index);
 cdl_Status build_subsurface_medium(Builder *builder, const json_t *json, uint32_t *index);
+
+/* Lengthens the mean free paths of a subsurface material to those of isotropic scattering. */
+void subsurface_stretch(const json_t *json, const float albedo[3], float radius[3]);
 cdl_Status build_volume(Builder *builder, const json_t *volume, const json_t *scatter,
                         uint32_t *index);
 

@@ -26,6 +26,11 @@ static const ParamMember subsurface[] = {
     ALPHA(CDL_ROUGH_DIELECTRIC_ALPHA, 0.3f),
     {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R},
     END};
+static const ParamMember profile[] = {
+    ALPHA(CDL_SUBSURFACE_ALPHA, 0.3f),
+    {"ior", CDL_SUBSURFACE_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R},
+    {"radius", CDL_SUBSURFACE_RADIUS, 3, {1e-3f, 1e-3f, 1e-3f}, "radiusTexture", CHANNEL_R},
+    END};
 static const ParamMember plastic[] = {ALPHA(CDL_PLASTIC_ALPHA, 0.1f),
                                       {"ior", CDL_PLASTIC_IOR, 1, {1.5f}, "iorTexture", CHANNEL_R},
                                       END};
@@ -85,6 +90,14 @@ static const Model models[] = {
 static const Model frosted = {
     "dielectric",    CDL_MODEL_ROUGH_DIELECTRIC, "transmittance", "transmittanceTexture", 1,
     rough_dielectric};
+
+/* What "subsurface" is where its light follows a profile. */
+static const Model profiled = {"subsurface", CDL_MODEL_SUBSURFACE, "albedo", "albedoTexture", 0.5f,
+                               profile};
+
+static int is_profiled(const json_t *json) {
+  return strcmp(json_get_string(json, "method", "random_walk"), "random_walk") != 0;
+}
 
 static int is_rough(const json_t *json) {
   float alpha[2] = {0, 0};
@@ -148,12 +161,35 @@ static void drop_compensation(Builder *builder, const char *at, cdl_SceneMateria
                 "energyCompensation is left out for glass that is rougher one way than the other.");
 }
 
+/* The ways in which light goes under a surface: through a medium, or by a profile. */
+static cdl_Status build_walk(Builder *builder, const char *at, const json_t *json,
+                             cdl_SceneMaterial *material) {
+  static const char *const textures[] = {"albedoTexture", "radiusTexture"};
+  for (size_t i = 0; i < sizeof textures / sizeof *textures; i++)
+    if (json_object_get(json, textures[i]))
+      document_note(builder->doc, NULL, at,
+                    "%s is left out: random_walk's inside is the same everywhere; the methods "
+                    "diffusion and dipole take it.",
+                    textures[i]);
+  return build_subsurface_medium(builder, json, &material->medium);
+}
+
+static void build_profile(const json_t *json, cdl_SceneMaterial *material) {
+  material->dipole = strcmp(json_get_string(json, "method", ""), "dipole") == 0;
+  subsurface_stretch(json, material->base, material->param + CDL_SUBSURFACE_RADIUS);
+  for (uint32_t i = 0; i < material->texture_count; i++) {
+    cdl_SceneParamTexture *texture = &material->textures[i];
+    memcpy(texture->scale, material->param + texture->param, texture->words * sizeof(float));
+  }
+}
+
 cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *json,
                               cdl_SceneMaterial *material) {
   const char *at = AT("/materials/%u/extensions/CDL_material", index);
   const char *name = json_get_string(json, "model", "");
   const Model *model = find_model(name);
   if (model && model->model == CDL_MODEL_DIELECTRIC && is_rough(json)) model = &frosted;
+  if (model && model->members == subsurface && is_profiled(json)) model = &profiled;
   if (!model)
     return not_supported(builder, name, at, AT("the model %s", name),
                          "the plain glTF material takes its place");
@@ -176,8 +212,8 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   if (model->model == CDL_MODEL_DISNEY) material->param[CDL_DISNEY_THIN] = (float)material->thin;
   if (!status && model->model == CDL_MODEL_CONDUCTOR)
     status = read_metal(builder, at, json, material);
-  if (!status && model->members == subsurface)
-    status = build_subsurface_medium(builder, json, &material->medium);
+  if (!status && model->members == subsurface) status = build_walk(builder, at, json, material);
+  if (!status && model->members == profile) build_profile(json, material);
   return status;
 }
 

@@ -48,9 +48,22 @@ static double inner_reflectance(double ior) {
   return fmin(fmax(-1.4399 / (ior * ior) + 0.7099 / ior + 0.6681 + 0.0636 * ior, 0), 1);
 }
 
-/* The inside of a subsurface material. `albedo` is what its body reflects of the light that has
- * entered it: what the boundary sends back in from below is made up for. Scattering that favours
- * one direction needs as much more of it as leaves the diffusion the same (similarity relation). */
+/* Albedo of one isotropic collision under a boundary such that the body reflects `albedo` of the
+ * light that has entered it: what the boundary sends back in from below is made up for. */
+static double body_albedo(double albedo, double ior) {
+  double inner = inner_reflectance(ior);
+  return single_albedo((float)(albedo / (1 - inner + inner * albedo)));
+}
+
+/* Scattering that favours one direction needs as much more of it as leaves the diffusion the same
+ * (similarity relation); profiles know it as a longer way. */
+void subsurface_stretch(const json_t *json, const float albedo[3], float radius[3]) {
+  double ior = json_get_number(json, "ior", 1.4), g = phase_hg(json_get_number(json, "g", 0)).g[0];
+  for (int c = 0; c < 3; c++)
+    radius[c] *= (float)((1 - g + g * body_albedo(albedo[c], ior)) / (1 - g));
+}
+
+/* The inside of a subsurface material. */
 cdl_Status build_subsurface_medium(Builder *builder, const json_t *json, uint32_t *index) {
   cdl_SceneMedium medium = {.density = CDL_NONE,
                             .temperature = CDL_NONE,
@@ -58,12 +71,11 @@ cdl_Status build_subsurface_medium(Builder *builder, const json_t *json, uint32_
                             .walk = 1,
                             .phase = phase_hg(json_get_number(json, "g", 0))};
   float albedo[3] = {0.5f, 0.5f, 0.5f}, radius[3] = {1e-3f, 1e-3f, 1e-3f};
-  double inner = inner_reflectance(json_get_number(json, "ior", 1.4)), g = medium.phase.g[0];
+  double ior = json_get_number(json, "ior", 1.4), g = medium.phase.g[0];
   json_get_numbers(json, "albedo", 3, albedo);
   json_get_numbers(json, "radius", 3, radius);
   for (int c = 0; c < 3; c++) {
-    double body = albedo[c] / (1 - inner + inner * albedo[c]);
-    double isotropic = single_albedo((float)body);
+    double isotropic = body_albedo(albedo[c], ior);
     double single = isotropic / (1 - g + g * isotropic);
     double sigma = 1 / fmax(radius[c], 1e-6); /* smaller ones are opaque */
     medium.scattering[c] = (float)(single * sigma);

@@ -148,6 +148,7 @@ static void note_instance(Geometry *g, const cdl_SceneMesh *mesh, int moves,
   cdl_PackFeatures *features = &g->pack->features;
   int emissive = (material->flags & CDL_MATERIAL_EMISSIVE) != 0;
   features->models[material->model] |= emissive ? 3 : 1;
+  if (material->model == CDL_MODEL_SUBSURFACE) features->models[CDL_MODEL_SUBSURFACE_EXIT] = 1;
   features->passable |= material_passable(material);
   features->opacity |= material_passable(material) && material->model != CDL_MODEL_INTERFACE;
   *first_light = CDL_NONE;

@@ -149,7 +149,8 @@ static uint32_t material_flags(const cdl_SceneMaterial *from) {
          (from->alpha_mode == CDL_ALPHA_BLEND ? CDL_MATERIAL_BLEND : 0u) |
          (is_boundary(from) ? CDL_MATERIAL_BOUNDARY : 0u) | (from->thin ? CDL_MATERIAL_THIN : 0u) |
          (from->energy_compensation ? CDL_MATERIAL_ENERGY_COMPENSATED : 0u) |
-         (is_folded(from) ? CDL_MATERIAL_NORMAL_MAPPED : 0u);
+         (is_folded(from) ? CDL_MATERIAL_NORMAL_MAPPED : 0u) |
+         (from->dipole ? CDL_MATERIAL_DIPOLE : 0u);
 }
 
 static void pack_param_texture(const cdl_SceneParamTexture *from, cdl_ParamTexture *to) {

@@ -76,6 +76,7 @@ typedef struct cdl_SceneMaterial {
   int thin;                /* a sheet, which holds no medium */
   int energy_compensation; /* light is not lost between microfacets */
   int transmits;           /* paths can go through it by scattering */
+  int dipole;              /* the profile of a subsurface model */
   int anisotropic;         /* looks different along its tangents */
   float normal_scale, coat_normal_scale;
   float emission[3]; /* factor x strength, radiance */

@@ -19,12 +19,14 @@
 #define CDL_MODEL_DISNEY 8u
 #define CDL_MODEL_GLTF 9u
 #define CDL_MODEL_GLTF_LAYERED 10u /* glTF with layers that extensions add */
-#define CDL_MODEL_DIFFUSE 11u
-#define CDL_MODEL_INTERFACE 12u /* the boundary of a medium; has no queue of its own */
-#define CDL_MODEL_COUNT 13u
+#define CDL_MODEL_SUBSURFACE 11u
+#define CDL_MODEL_SUBSURFACE_EXIT 12u /* where light from under such a surface comes out again */
+#define CDL_MODEL_DIFFUSE 13u
+#define CDL_MODEL_INTERFACE 14u /* the boundary of a medium; has no queue of its own */
+#define CDL_MODEL_COUNT 15u
 #define CDL_MODEL_FIRST_LIT CDL_MODEL_ROUGH_DIELECTRIC
 #define CDL_MODEL_FIRST_PARAMETERS CDL_MODEL_DIELECTRIC
-#define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_GLTF_LAYERED
+#define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_SUBSURFACE_EXIT
 
 /* M(MODEL, name, words of parameters) for all that shading kernels are made for. */
 #define CDL_SHADED_MODELS(M)                                                                       \
@@ -39,6 +41,8 @@
   M(DISNEY, disney, CDL_DISNEY_PARAMS)                                                             \
   M(GLTF, gltf, CDL_GLTF_PARAMS)                                                                   \
   M(GLTF_LAYERED, gltf_layered, CDL_GLTF_LAYERED_PARAMS)                                           \
+  M(SUBSURFACE, subsurface, CDL_SUBSURFACE_PARAMS)                                                 \
+  M(SUBSURFACE_EXIT, subsurface_exit, CDL_SUBSURFACE_PARAMS)                                       \
   M(DIFFUSE, diffuse, 0)
 
 /* cdl_Material.flags */
@@ -52,6 +56,7 @@
 #define CDL_MATERIAL_THIN 128u    /* a sheet: what goes in comes out on the other side */
 #define CDL_MATERIAL_ENERGY_COMPENSATED 256u
 #define CDL_MATERIAL_NORMAL_MAPPED 512u /* and nothing goes through */
+#define CDL_MATERIAL_DIPOLE 1024u /* the profile of a subsurface model; else diffusion's */
 
 /* A texture look-up: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5. */
 typedef struct cdl_TextureSlot {

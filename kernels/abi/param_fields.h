@@ -79,6 +79,17 @@ enum { CDL_PARAM(OREN_NAYAR, ROUGHNESS, 1), CDL_OREN_NAYAR_PARAMS };
 /* Microfacet alpha of the coat along tangent and bitangent; its index, [1,3]. */
 enum { CDL_PARAM(PLASTIC, ALPHA, 2), CDL_PARAM(PLASTIC, IOR, 1), CDL_PLASTIC_PARAMS };
 
+/* As plastic's; mean free paths in m. What profiles have found from them and from the albedo, filled
+ * in by shading: bsdf/profile.h. */
+enum {
+  CDL_PARAM(SUBSURFACE, ALPHA, 2),
+  CDL_PARAM(SUBSURFACE, IOR, 1),
+  CDL_PARAM(SUBSURFACE, RADIUS, 3),
+  CDL_PARAM(SUBSURFACE, SLOPE, 3),
+  CDL_PARAM(SUBSURFACE, REACH, 3),
+  CDL_SUBSURFACE_PARAMS
+};
+
 /* Burley's names and ranges: all [0,1] but IOR > 0 and DIFF_TRANS [0,2]; THIN is 0 or 1. */
 enum {
   CDL_PARAM(DISNEY, METALLIC, 1),

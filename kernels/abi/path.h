@@ -56,6 +56,8 @@ enum {
 #define CDL_QUEUE_COUNT (CDL_QUEUE_ENDED + 1u)
 #define CDL_QUEUE_SHADOWS CDL_QUEUE_COUNT /* no queue: its count is that of the shadow rays */
 #define CDL_QUEUE_LIVE 0u                 /* written by shading: to be traced */
+#define CDL_QUEUE_PROBE 0xfffffffeu       /* by shading: gone under the surface */
+#define CDL_QUEUE_EXIT (CDL_QUEUE_MODELS + 2u * CDL_MODEL_SUBSURFACE_EXIT) /* and come out */
 #define CDL_QUEUE_DEAD 0xffffffffu
 
 /* Queues begin at multiples of this and are padded to it, so that work-groups are full. The first

@@ -45,6 +45,13 @@ CDL_INLINE vec3 param_vec3(CDL_GLOBAL const uint *params, uint word, size_t stri
             param_float(params, word + 2u, stride, i));
 }
 
+CDL_INLINE void param_set_vec3(CDL_GLOBAL uint *params, uint word, size_t stride, size_t i,
+                               vec3 value) {
+  params[word * stride + i] = as_uint(value.x);
+  params[(word + 1u) * stride + i] = as_uint(value.y);
+  params[(word + 2u) * stride + i] = as_uint(value.z);
+}
+
 typedef struct BsdfValue {
   vec3 f_cos; /* f |cos theta_i|, >= 0 */
   float pdf;  /* of sampling this wi, per solid angle */

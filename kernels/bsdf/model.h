@@ -1,6 +1,7 @@
 /* model.h: the one model that a shading kernel is built for, under names that do not say which.
  * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross
- * it. CDL_SHADE_ENERGY: it takes the tables of energy.h. */
+ * it. CDL_SHADE_ENERGY: it takes the tables of energy.h. CDL_SHADE_ENTERS: `transmitted` means that
+ * the path goes under the surface; CDL_SHADE_LEAVES: it comes out from there. */
 #ifndef CDL_BSDF_MODEL_H
 #define CDL_BSDF_MODEL_H
 
@@ -108,6 +109,24 @@
 #define bsdf_params gltf_layered_params
 #define bsdf_evaluate gltf_layered_evaluate
 #define bsdf_sample_model gltf_layered_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_SUBSURFACE
+#include "bsdf/subsurface.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define CDL_SHADE_ENTERS 1
+#define BsdfParams SubsurfaceParams
+#define bsdf_params subsurface_params
+#define bsdf_evaluate subsurface_evaluate
+#define bsdf_sample_model subsurface_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_SUBSURFACE_EXIT
+#include "bsdf/subsurface.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 0
+#define CDL_SHADE_LEAVES 1
+#define BsdfParams SubsurfaceExitParams
+#define bsdf_params subsurface_exit_params
+#define bsdf_evaluate subsurface_exit_evaluate
+#define bsdf_sample_model subsurface_exit_sample
 #else
 #error "CDL_SHADE_MODEL names no material model that scatters light"
 #endif

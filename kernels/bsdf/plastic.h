@@ -73,15 +73,15 @@ CDL_INLINE float plastic_average(int b, float alpha, float ior) {
   return math_saturate(s * fma(fma(fma(a3, r, a2), r, a1), r, a0));
 }
 
-CDL_INLINE PlasticParams plastic_params(BsdfPoint point, CDL_GLOBAL const uint *params,
-                                        size_t stride, size_t i) {
+CDL_INLINE PlasticParams plastic_make(BsdfPoint point, float alpha_along, float alpha_across,
+                                      float ior) {
   PlasticParams p;
-  float alpha_x = math_clamp(param_float(params, CDL_PLASTIC_ALPHA, stride, i), 0.0f, 1.0f);
-  float alpha_y = math_min(param_float(params, CDL_PLASTIC_ALPHA + 1u, stride, i), 1.0f);
+  float alpha_x = math_clamp(alpha_along, 0.0f, 1.0f);
+  float alpha_y = math_min(alpha_across, 1.0f);
   int beckmann = (point.flags & CDL_MATERIAL_BECKMANN) != 0u;
   p.facets =
       microfacet_surface(alpha_x, alpha_y, beckmann, (point.flags & CDL_MATERIAL_SEPARABLE) != 0u);
-  p.eta = math_clamp(param_float(params, CDL_PLASTIC_IOR, stride, i), 1.0f, 3.0f);
+  p.eta = math_clamp(ior, 1.0f, 3.0f);
   p.spread = (p.eta - 1.0f) / (p.eta - 0.96f);
   float x2 = p.facets.alpha_x * p.facets.alpha_x;
   float y2 = p.facets.alpha_y * p.facets.alpha_y;
@@ -97,6 +97,13 @@ CDL_INLINE PlasticParams plastic_params(BsdfPoint point, CDL_GLOBAL const uint *
   p.base = v3(x, y, z);
   p.guess = v3_max(p.base) * (1.0f - average);
   return p;
+}
+
+CDL_INLINE PlasticParams plastic_params(BsdfPoint point, CDL_GLOBAL const uint *params,
+                                        size_t stride, size_t i) {
+  return plastic_make(point, param_float(params, CDL_PLASTIC_ALPHA, stride, i),
+                      param_float(params, CDL_PLASTIC_ALPHA + 1u, stride, i),
+                      param_float(params, CDL_PLASTIC_IOR, stride, i));
 }
 
 /* The share of light from w, of the base's side of the coat: 1 - F(c). alpha is that along w,

@@ -21,8 +21,9 @@
 #define CDL_PAIR_FREE_FLIGHT 4u /* which channel's extinction; the distance */
 #define CDL_PAIR_TEXEL 5u       /* the point within a cell of the environment */
 #define CDL_PAIR_OPACITY 6u     /* whether a half transparent surface is passed */
-#define CDL_PAIR_CHANNEL 7u     /* which colour channel goes on in a dispersive medium */
-#define CDL_PAIRS_PER_VERTEX 8u
+#define CDL_PAIR_CHANNEL 7u     /* which colour channel goes on alone; which exit a probe takes */
+#define CDL_PAIR_NEAR_LIGHT 8u  /* which light a distance is drawn near to; whether */
+#define CDL_PAIRS_PER_VERTEX 9u
 
 /* Who draws: the pixel's key and the number of the sample. */
 typedef struct PathRandom {

@@ -32,7 +32,7 @@ intersect(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restr
           CDL_GLOBAL const cdl_Material *materials, CDL_GLOBAL uint *path, CDL_GLOBAL uint *work) {
   size_t i = get_global_id(0);
   size_t stride = wave->stride;
-  if (state_uint(work, CDL_WORK_QUEUE, stride, i) == CDL_QUEUE_DEAD) return;
+  if (state_uint(work, CDL_WORK_QUEUE, stride, i) != CDL_QUEUE_LIVE) return;
   vec3 origin = state_vec3(path, CDL_PATH_ORIGIN, stride, i);
   vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
 #ifdef CDL_MOTION

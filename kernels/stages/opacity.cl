@@ -16,6 +16,7 @@ __kernel void opacity(CDL_CONSTANT cdl_Params *restrict params,
     size_t stride = wave->stride;
     uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
     int on_surface = (queue >= CDL_QUEUE_MODELS) & (queue < CDL_QUEUE_MEDIUM);
+    on_surface &= queue != CDL_QUEUE_EXIT;
     uint hit = state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i);
     CDL_GLOBAL const cdl_Triangle *triangle = triangles + (on_surface ? hit : 0u);
     CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;

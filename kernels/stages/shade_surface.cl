@@ -1,6 +1,6 @@
 /* shade_surface: light that a surface scatters. Built once for each model, -DCDL_SHADE_MODEL=…, and
  * run on that model's queue: weighs the sampled light, then samples the direction in which to go
- * on. */
+ * on, or the probe by which to go under the surface. */
 #include "lib/stage.h"
 
 #include "bsdf/model.h"
@@ -35,7 +35,11 @@ CDL_INLINE Vertex load_vertex(CDL_CONSTANT cdl_Params *params, CDL_CONSTANT cdl_
                                  state_vec3(work, CDL_WORK_TANGENT, stride, i));
   at.wo = frame_to_local(at.shading, v3_neg(state_vec3(path, CDL_PATH_DIRECTION, stride, i)));
   at.counts = state_uint(path, CDL_PATH_COUNTS, stride, i);
+#ifdef CDL_SHADE_LEAVES
+  at.scatters = 1; /* counted where it went under */
+#else
   at.scatters = counts_depth(at.counts) < params->max_depth;
+#endif
   uint vertex = state_uint(work, CDL_WORK_VERTEX, stride, i);
   at.front = (vertex & CDL_VERTEX_FRONT) != 0u;
   at.mirrored = (vertex & CDL_VERTEX_MIRRORED) != 0u;
@@ -147,6 +151,31 @@ CDL_INLINE vec3 fold(Vertex at, vec3 wi) {
 }
 #endif
 
+#ifdef CDL_SHADE_ENTERS
+/* The way under the surface: a probe instead of a ray, and what probe_subsurface needs to weigh
+ * what it finds. */
+CDL_INLINE void store_probe(Vertex at, BsdfParams p, vec3 next, int under, float u, float v,
+                            float lobe, CDL_GLOBAL uint *path, CDL_GLOBAL uint *work, size_t stride,
+                            size_t i) {
+  float choice, unused;
+  vertex_random(at.random, counts_vertex(at.counts), CDL_PAIR_CHANNEL, &choice, &unused);
+  SubsurfaceProfiles profiles = subsurface_profiles(p, at.position);
+  SubsurfaceProbe probe =
+      subsurface_probe(profiles, subsurface_channels(next), at.position,
+                       frame_from_tangent(at.geometric, at.shading.x), SUBSURFACE_NORMAL_SHARE, u,
+                       v, subsurface_rest(p, at.wo, lobe), choice);
+  vec3 origin = state_vec3(path, CDL_PATH_ORIGIN, stride, i);
+  vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+  uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
+  int probes = under & (queue == CDL_QUEUE_LIVE);
+  state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, v3_select(under, probe.origin, origin));
+  state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, v3_select(under, probe.direction, direction));
+  state_set_float(path, CDL_PATH_HIT_T, stride, i, under ? probe.length : 0.0f);
+  state_set_uint(work, CDL_WORK_QUEUE, stride, i, probes ? CDL_QUEUE_PROBE : queue);
+  subsurface_store(profiles, work + CDL_WORK_PARAM * stride, stride, i);
+}
+#endif
+
 #ifdef CDL_SHADE_ENERGY
 #define SHADE_ENERGY_PARAMETER , CDL_GLOBAL const float *energy_table
 #define SHADE_ENERGY_ARGUMENT , energy_table
@@ -183,6 +212,9 @@ CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict pa
     float side = v3_dot(wi, at.geometric);
     int through = sample.transmitted;
     int right_side = through ? side < 0.0f : side > 0.0f;
+#ifdef CDL_SHADE_ENTERS
+    right_side |= through;
+#endif
     vec3 next = roulette(params, counts_depth(at.counts) + 1u,
                          v3_mul(point.throughput, sample.weight), chance);
     next = v3_select(at.scatters & right_side, next, v3_all(0.0f));
@@ -193,7 +225,11 @@ CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict pa
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
     state_set_float(path, CDL_PATH_PDF, stride, i, sample.delta ? 0.0f : sample.pdf);
     state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
+#ifdef CDL_SHADE_LEAVES
+    state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_passed(at.counts));
+#else
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(at.counts));
+#endif
 #if CDL_SHADE_TRANSMITS
     state_set_uint(path, CDL_PATH_MEDIA, stride, i, through ? at.beyond.inner : at.before.inner);
     state_set_uint(path, CDL_PATH_MEDIA + 1, stride, i,
@@ -201,6 +237,9 @@ CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict pa
 #endif
     state_set_uint(work, CDL_WORK_QUEUE, stride, i,
                    v3_max(next) > 0.0f ? CDL_QUEUE_LIVE : CDL_QUEUE_DEAD);
+#ifdef CDL_SHADE_ENTERS
+    store_probe(at, p, next, through, u, v, lobe, path, work, stride, i);
+#endif
   }
 }
 

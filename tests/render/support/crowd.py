@@ -41,6 +41,7 @@ def _models(s):
     red = [0.8, 0.3, 0.2]
     glass = {"model": "dielectric", "ior": 1.5}
     disney = {"model": "disney", "baseColor": red}
+    under = {"model": "subsurface", "albedo": red, "radius": [0.1, 0.05, 0.02], "g": 0.3}
     return [
         s.material({"model": "oren_nayar", "reflectance": red, "roughness": 0.7}),
         s.material({"model": "plastic", "reflectance": red, "alpha": 0.1}),
@@ -52,7 +53,10 @@ def _models(s):
         s.material(dict(glass, abbe=20)), s.material(dict(glass, abbe=20, alpha=0.05)),
         s.material(dict(glass, alpha=0.5, energyCompensation=True)),
         s.material({"model": "conductor", "metal": "Ag", "alpha": [0.5, 0.2],
-                    "energyCompensation": True})]
+                    "energyCompensation": True}),
+        s.material(under), s.material(dict(under, method="diffusion", alpha=0)),
+        s.material(dict(under, method="dipole", albedoTexture=s.texture(_codes(9)),
+                        radiusTexture=s.texture(_codes(10))))]
 
 
 def _layers(s):
