@@ -5,6 +5,7 @@
 
 #include "lib/math.h"
 #include "lib/vec.h"
+#include "media/equiangular.h"
 
 /* exp(-sigma t), Beer and Lambert; 1 where sigma is 0, however far. */
 CDL_INLINE float homogeneous_transmittance_channel(float sigma, float t) {
@@ -54,10 +55,12 @@ CDL_INLINE vec3 homogeneous_channels(vec3 throughput) {
 
 /* Samples the free flight in a medium up to t_max, which may be infinite.
  * One channel, drawn by u_channel, gives the distance; the weight divides by the probability over
- * all of them (one-sample MIS, balance heuristic). A medium that only absorbs is never stopped in:
- * it weights by exp(-sigma t_max), vacuum by 1. */
+ * all of them (one-sample MIS, balance heuristic), and so it does over `near`, by which the
+ * distance is drawn instead where u_strategy is below its chance. A medium that only absorbs is
+ * never stopped in: it weights by exp(-sigma t_max), vacuum by 1. */
 CDL_INLINE FreeFlight homogeneous_sample(vec3 sigma_a, vec3 sigma_s, vec3 throughput, float t_max,
-                                         float u_channel, float u_distance) {
+                                         float u_channel, float u_distance, EquiAngular near,
+                                         float u_strategy) {
   FreeFlight flight;
   vec3 sigma_t = v3_add(sigma_a, sigma_s);
   vec3 q = homogeneous_channels(throughput);
@@ -65,11 +68,15 @@ CDL_INLINE FreeFlight homogeneous_sample(vec3 sigma_a, vec3 sigma_s, vec3 throug
   float beyond_x = u_channel < q.x + q.y ? sigma_t.y : sigma_t.z;
   float sigma = u_channel < q.x ? sigma_t.x : beyond_x;
   float drawn = -math_log(1.0f - u_distance) / (sigma > 0.0f ? sigma : 1.0f);
-  flight.scattered = scatters && sigma > 0.0f && drawn < t_max;
+  float chance = scatters ? near.chance : 0.0f;
+  int draws_near = u_strategy < chance;
+  drawn = draws_near ? equiangular_sample(near, t_max, u_distance) : drawn;
+  flight.scattered = scatters && (draws_near || (sigma > 0.0f && drawn < t_max));
   flight.t = flight.scattered ? drawn : t_max;
   vec3 t = homogeneous_transmittance(sigma_t, flight.t);
   vec3 rate = v3_select(flight.scattered, sigma_t, v3_all(1.0f));
   float mixed = v3_dot(v3_mul(q, rate), t);
+  mixed = math_lerp(mixed, flight.scattered ? equiangular_pdf(near, flight.t) : 0.0f, chance);
   float probability = scatters ? mixed : 1.0f;
   float inverse = 1.0f / (probability > 0.0f ? probability : 1.0f);
   vec3 value = v3_mul(t, v3_select(flight.scattered, sigma_s, v3_all(1.0f)));

@@ -2,15 +2,42 @@
  * light goes before it is scattered, what is absorbed on the way, and what the medium emits. */
 #include "lib/stage.h"
 
+#include "abi/light.h"
 #include "lib/dimensions.h"
 #include "lib/state.h"
+#include "light/select.h"
 #include "media/homogeneous.h"
 #include "media/stack.h"
 
+/* The lamp near which a scattering event may be drawn; none where the sky is chosen. */
+CDL_INLINE EquiAngular near_light(CDL_CONSTANT cdl_Params *params,
+                                  CDL_GLOBAL const cdl_Light *lights,
+                                  CDL_GLOBAL const cdl_AliasEntry *light_table, uint bits,
+                                  vec3 origin, vec3 direction, float t_max, float sigma) {
+#ifdef CDL_NEAR_LIGHTS
+  float keep = rng_to_unit(bits * params->light_count);
+  CDL_GLOBAL const cdl_Light *light =
+      lights + alias_pick(light_table, params->light_count, bits, keep);
+  float third = light->type == CDL_LIGHT_TRIANGLE ? 0.333333343f : 0.0f;
+  vec3 point = v3(fma(light->e1[0] + light->e2[0], third, light->p[0]),
+                  fma(light->e1[1] + light->e2[1], third, light->p[1]),
+                  fma(light->e1[2] + light->e2[2], third, light->p[2]));
+  EquiAngular near = equiangular_toward(point, origin, direction, t_max, sigma);
+  int somewhere = (light->type == CDL_LIGHT_TRIANGLE) | (light->type == CDL_LIGHT_POINT);
+  near.chance = somewhere ? near.chance : 0.0f;
+  return near;
+#else
+  return equiangular_none();
+#endif
+}
+
 CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
                                       CDL_CONSTANT cdl_Wave *restrict wave,
-                                      CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
-                                      CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
+                                      CDL_GLOBAL const cdl_Medium *media,
+                                      CDL_GLOBAL const cdl_Light *lights,
+                                      CDL_GLOBAL const cdl_AliasEntry *light_table,
+                                      CDL_GLOBAL uint *path, CDL_GLOBAL uint *work,
+                                      CDL_GLOBAL uint *slots) {
   CDL_FOR_STRIP(i, first) {
     size_t stride = wave->stride;
     uint queue = state_uint(work, CDL_WORK_QUEUE, stride, i);
@@ -39,8 +66,22 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
     int glows = alive & (medium->emissive != 0u);
     state_add_radiance(slots, wave->slots, slot, v3_select(glows, emitted, v3_all(0.0f)));
 
-    FreeFlight flight =
-        homogeneous_sample(absorption, scattering, throughput, distance, channel, chance);
+    uint light_bits, strategy_bits;
+    vertex_random_bits(random, counts_vertex(counts), CDL_PAIR_NEAR_LIGHT, &light_bits,
+                       &strategy_bits);
+    vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
+    vec3 begin = v3_madd(state_vec3(path, CDL_PATH_ORIGIN, stride, i), passed, direction);
+    vec3 extinction = v3_add(absorption, scattering);
+    float sigma = (extinction.x + extinction.y + extinction.z) * 0.333333343f;
+    EquiAngular near =
+        near_light(params, lights, light_table, light_bits, begin, direction, distance, sigma);
+    /* Only straight from the camera, as every flight that ends behind the fog weighs the path more,
+     * which adds up over bounces; and not before what shines itself, which would flicker. */
+    int dark = (queue >= CDL_QUEUE_MODELS) & ((queue & 1u) == (CDL_QUEUE_MODELS & 1u));
+    int fresh = (counts_depth(counts) == 0u) & (params->max_depth > 0u) & (medium->walk == 0u);
+    near.chance = dark & fresh ? near.chance : 0.0f;
+    FreeFlight flight = homogeneous_sample(absorption, scattering, throughput, distance, channel,
+                                           chance, near, rng_to_unit(strategy_bits));
     int scattered = alive & flight.scattered;
     vec3 next = v3_mul(throughput, flight.weight);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(alive, next, throughput));
@@ -53,7 +94,9 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
 
 __kernel void sample_medium(CDL_CONSTANT cdl_Params *restrict params,
                             CDL_CONSTANT cdl_Wave *restrict wave,
-                            CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL uint *path,
+                            CDL_GLOBAL const cdl_Medium *media, CDL_GLOBAL const cdl_Light *lights,
+                            CDL_GLOBAL const cdl_AliasEntry *light_table, CDL_GLOBAL uint *path,
                             CDL_GLOBAL uint *work, CDL_GLOBAL uint *slots) {
-  sample_medium_strip(get_global_id(0) * CDL_STRIP, params, wave, media, path, work, slots);
+  sample_medium_strip(get_global_id(0) * CDL_STRIP, params, wave, media, lights, light_table, path,
+                      work, slots);
 }

@@ -112,6 +112,37 @@ static void test_free_flight(void **state) {
   free(rows);
 }
 
+/* A lamp beside the ray, on it, before its beginning and behind its end: distances near to it are
+ * spread by angle, and the weights' means stay what they are. */
+static void test_flight_near_a_lamp(void **state) {
+  (void)state;
+  static const float lamps[][2] = {{0.5f, 1}, {1e-6f, 0.4f}, {2, -1}, {0.1f, 40}};
+  float *rows = calloc((size_t)SAMPLES * 7, sizeof *rows);
+  assert_non_null(rows);
+  for (uint i = 0; i < FLIGHTS * 4; i++) {
+    const Flight *f = &flights[i / 4];
+    const float *lamp = lamps[i % 4];
+    float in[13];
+    memcpy(in, f->sigma_a, 12), memcpy(in + 3, f->sigma_s, 12), memcpy(in + 6, f->throughput, 12);
+    in[9] = f->t_max, in[10] = as_float(i + 90), in[11] = lamp[0], in[12] = lamp[1];
+    HarnessBuffer buffers[] = {{in, sizeof in}, {rows, (size_t)SAMPLES * 7 * sizeof *rows}};
+    harness_run(harness, "sample_flight_near", SAMPLES, buffers, 2);
+    check_flight_weights(f, rows);
+    double low = atan2(-lamp[1], lamp[0]), high = atan2(f->t_max - lamp[1], lamp[0]), sum = 0;
+    if (high - low < 1e-3) continue; /* it sees the stretch under no angle */
+    for (size_t k = 0; k < SAMPLES; k++) {
+      double t = rows[5 * (size_t)SAMPLES + k], pdf = rows[6 * (size_t)SAMPLES + k];
+      sum += (atan2(t - lamp[1], lamp[0]) - low) / (high - low);
+      double aside = lamp[0], from = t - lamp[1];
+      double truth = aside / ((high - low) * (aside * aside + from * from));
+      if (lamp[0] > 1e-3f && fabs(pdf - truth) > 1e-3 * truth) fail_msg("%s: pdf %g", f->name, pdf);
+    }
+    if (lamp[0] > 1e-3f && fabs(sum / SAMPLES - 0.5) > 5 * sqrt(1 / 12.0 / SAMPLES) + 1e-5)
+      fail_msg("%s: mean angle %g", f->name, sum / SAMPLES);
+  }
+  free(rows);
+}
+
 /* ---- Beer and Lambert ---- */
 
 static void test_transmittance(void **state) {
@@ -159,6 +190,7 @@ int main(void) {
   harness_prepare();
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(test_free_flight),
+      cmocka_unit_test(test_flight_near_a_lamp),
       cmocka_unit_test(test_transmittance),
   };
   return cmocka_run_group_tests(tests, open_device, close_device);
