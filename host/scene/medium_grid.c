@@ -1,7 +1,8 @@
-/* medium_grid.c: the grids of a medium: from a volume file into the index space of its density.
+/* medium_grid.c: the grids of a medium: from a volume file into one index space.
  *
- * All grids of a medium share the index box of its density: where that is 0 nothing absorbs, emits
- * or scatters, so that what the others hold outside of the box does not matter. */
+ * All grids of a medium share one index box: that of its density, and where it has a temperature of
+ * both, since what is hot glows without being dense. What the colour holds outside does not
+ * matter. */
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -19,6 +20,8 @@ typedef struct Volume {
   const char *pointer, *uri, *file; /* the JSON of the grid, and its file as messages name it */
   Bytes bytes;                      /* read when a grid is not there yet */
   cdl_SceneMedium *medium;
+  int32_t low[3]; /* box of the density alone */
+  uint32_t size[3];
 } Volume;
 
 static cdl_Status refuse(const Volume *volume, const char *member, const char *grid,
@@ -111,17 +114,50 @@ static cdl_Status read_source(Volume *volume, const char *member, const char *na
   return CDL_OK;
 }
 
-static cdl_Status read_density(Volume *volume, const char *name) {
-  GridSource source;
-  uint32_t size[3], *index = &volume->medium->density;
-  *index = find_grid(volume, name, NULL);
-  if (*index != CDL_NONE) return CDL_OK;
+static cdl_Status check_channels(const Volume *volume, const char *member, const char *name,
+                                 const GridSource *source, uint32_t channels) {
+  if (source->channels == channels) return CDL_OK;
+  return refuse(volume, member, name,
+                channels == 1 ? "it has three channels, where one is wanted"
+                              : "it has one channel; a colour has three");
+}
+
+/* The box of the density, as far as there is no `heat`, or of both. */
+static void common_box(const GridSource *density, const GridSource *heat, cdl_SceneGrid *box) {
+  for (int k = 0; k < 3; k++) {
+    int32_t low = density->low[k], high = density->high[k];
+    if (heat && heat->low[k] < low) low = heat->low[k];
+    if (heat && heat->high[k] > high) high = heat->high[k];
+    box->low[k] = low;
+    box->size[k] = (uint32_t)(high - low) + 1;
+  }
+}
+
+/* `heat` is what was read of the temperature, or NULL. */
+static cdl_Status read_density(Volume *volume, const char *name, const GridSource *heat) {
+  GridSource source = {0};
+  cdl_SceneGrid box, *grids = volume->builder->scene->grids;
+  uint32_t *index = &volume->medium->density;
+  *index = heat ? CDL_NONE : find_grid(volume, name, NULL);
+  if (*index != CDL_NONE) {
+    memcpy(volume->low, grids[*index].low, sizeof volume->low);
+    memcpy(volume->size, grids[*index].size, sizeof volume->size);
+    return CDL_OK;
+  }
   cdl_Status status = read_source(volume, "density", name, &source);
-  if (!status && source.channels != 1)
-    status = refuse(volume, "density", name, "it has three channels; a density has one");
-  for (int k = 0; k < 3; k++) size[k] = (uint32_t)(source.high[k] - source.low[k]) + 1;
-  if (!status) status = add_grid(volume, "density", name, &source, source.low, size, index);
-  if (!status) volume->builder->scene->grids[*index].whole = 1;
+  if (!status) status = check_channels(volume, "density", name, &source, 1);
+  if (!status) {
+    common_box(&source, NULL, &box);
+    memcpy(volume->low, box.low, sizeof volume->low);
+    memcpy(volume->size, box.size, sizeof volume->size);
+    common_box(&source, heat, &box);
+    *index = find_grid(volume, name, &box);
+    if (*index == CDL_NONE)
+      status = add_grid(volume, "density", name, &source, box.low, box.size, index);
+  }
+  if (!status)
+    volume->builder->scene->grids[*index].whole = !memcmp(box.low, volume->low, sizeof box.low) &&
+                                                  !memcmp(box.size, volume->size, sizeof box.size);
   grid_source_free(&source);
   return status;
 }
@@ -143,26 +179,40 @@ static int same_space(const cdl_SceneGrid *density, const double to_world[12]) {
   return 1;
 }
 
-/* A further grid, over the box of the density. */
-static cdl_Status read_other(Volume *volume, const char *member, const char *name,
-                             uint32_t channels, uint32_t *index) {
-  GridSource source;
-  if (!name) return CDL_OK;
+/* A further grid, of which `source` was read, over the box of the density. */
+static cdl_Status place_other(Volume *volume, const char *member, const char *name,
+                              const GridSource *source, uint32_t *index) {
   /* A copy: adding a grid moves the others. */
   const cdl_SceneGrid density = volume->builder->scene->grids[volume->medium->density];
+  if (!same_space(&density, source->to_world))
+    return refuse(volume, member, name,
+                  "its transform is not that of the density; resample it to the same voxels");
   *index = find_grid(volume, name, &density);
-  if (*index != CDL_NONE && volume->builder->scene->grids[*index].channels == channels)
+  if (*index != CDL_NONE && volume->builder->scene->grids[*index].channels == source->channels)
     return CDL_OK;
-  cdl_Status status = read_source(volume, member, name, &source);
-  if (!status && source.channels != channels)
-    status = refuse(volume, member, name,
-                    channels == 1 ? "it has three channels; a temperature has one"
-                                  : "it has one channel; a colour has three");
-  if (!status && !same_space(&density, source.to_world))
-    status = refuse(volume, member, name,
-                    "its transform is not that of the density; resample it to the same voxels");
-  if (!status) status = add_grid(volume, member, name, &source, density.low, density.size, index);
+  return add_grid(volume, member, name, source, density.low, density.size, index);
+}
+
+static cdl_Status read_color(Volume *volume, const char *name) {
+  GridSource source;
+  if (!name) return CDL_OK;
+  cdl_Status status = read_source(volume, "color", name, &source);
+  if (!status) status = check_channels(volume, "color", name, &source, 3);
+  if (!status) status = place_other(volume, "color", name, &source, &volume->medium->color);
   grid_source_free(&source);
+  return status;
+}
+
+static cdl_Status read_density_and_temperature(Volume *volume, const char *density,
+                                               const char *temperature) {
+  GridSource heat;
+  if (!temperature) return read_density(volume, density, NULL);
+  cdl_Status status = read_source(volume, "temperature", temperature, &heat);
+  if (!status) status = check_channels(volume, "temperature", temperature, &heat, 1);
+  if (!status) status = read_density(volume, density, &heat);
+  if (!status)
+    status = place_other(volume, "temperature", temperature, &heat, &volume->medium->temperature);
+  grid_source_free(&heat);
   return status;
 }
 
@@ -181,7 +231,7 @@ static int read_bounds(const json_t *json, double bounds[2][3]) {
   return 1;
 }
 
-/* With bounds, the box between them is the index box with its outer voxels as a whole. */
+/* With bounds, the box between them is that of the density with its outer voxels as a whole. */
 static cdl_Status place(const Volume *volume, const json_t *bounds) {
   const cdl_SceneGrid *density = &volume->builder->scene->grids[volume->medium->density];
   const Document *doc = volume->builder->doc;
@@ -193,24 +243,22 @@ static cdl_Status place(const Volume *volume, const json_t *bounds) {
     return document_fail(doc, at, "TYPE_MISMATCH", "bounds are two corners of three numbers.");
   memset(to_index, 0, sizeof density->to_index);
   for (int k = 0; k < 3; k++) {
-    double scale = density->size[k] / (box[1][k] - box[0][k]);
+    double scale = volume->size[k] / (box[1][k] - box[0][k]);
     if (!(box[1][k] > box[0][k]) || !isfinite(scale) || !isfinite(scale * box[0][k]))
       return document_fail(doc, at, "VALUE_NOT_IN_RANGE",
                            "the second corner must lie above the first along each axis.");
     to_index[4 * k + k] = scale;
-    to_index[4 * k + 3] = -scale * box[0][k] - 0.5;
+    to_index[4 * k + 3] = (double)volume->low[k] - density->low[k] - 0.5 - scale * box[0][k];
   }
   return CDL_OK;
 }
 
 static cdl_Status read_grids(Volume *volume, const json_t *json) {
   cdl_SceneMedium *medium = volume->medium;
-  cdl_Status status = read_density(volume, json_get_string(json, "density", "density"));
-  if (!status)
-    status = read_other(volume, "temperature", json_get_string(json, "temperature", NULL), 1,
-                        &medium->temperature);
-  if (!status)
-    status = read_other(volume, "color", json_get_string(json, "color", NULL), 3, &medium->color);
+  cdl_Status status =
+      read_density_and_temperature(volume, json_get_string(json, "density", "density"),
+                                   json_get_string(json, "temperature", NULL));
+  if (!status) status = read_color(volume, json_get_string(json, "color", NULL));
   medium->temperature_scale = (float)json_get_number(json, "temperatureScale", 1);
   return status ? status : place(volume, json_object_get(json, "bounds"));
 }

@@ -39,7 +39,7 @@ CDL_INLINE vec3 medium_vec3(CDL_GLOBAL const float *v) { return v3(v[0], v[1], v
 /* Radiance of a black body, relative to the luminance of one of 1500 K. */
 CDL_INLINE vec3 blackbody_radiance(float kelvin, CDL_GLOBAL const float *blackbody) {
   float last = (float)(int)(CDL_BLACKBODY_COUNT - 2u);
-  float at = math_max(kelvin, 0.0f) * (1.0f / CDL_BLACKBODY_STEP);
+  float at = math_clamp(kelvin, 0.0f, 1e9f) * (1.0f / CDL_BLACKBODY_STEP);
   float node = math_min(floor(at), last);
   float part = math_min(at - node, 1.0f);
   float beyond = math_max(at / (last + 1.0f), 1.0f); /* in proportion: Rayleigh and Jeans */

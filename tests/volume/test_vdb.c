@@ -166,8 +166,8 @@ static void test_bounds(void **state) {
   scene_free(scene);
 }
 
-/* Grids of one medium lie over the box of the density, whatever their own; a grid that two media
- * use is there once. */
+/* Grids of one medium lie over one box, that of the density and of the temperature, so that what is
+ * hot outside of what is dense is there as well. */
 static void test_several(void **state) {
   (void)state;
   const VdbTile tile = {{-8, 0, 8}, 8, 900};
@@ -183,21 +183,39 @@ static void test_several(void **state) {
       "{\"extensions\":{\"CDL_medium\":{\"grid\":{\"uri\":\"a.vdb\",\"temperature\":null}}}}]}");
   if (!scene) print_message("%s", scene_errors);
   assert_non_null(scene);
-  assert_int_equal(scene->grid_count, 3);
+  assert_int_equal(scene->grid_count, 4); /* the density over its own box, too */
   const cdl_SceneMedium *a = &scene->media[0], *b = &scene->media[1];
-  assert_int_equal(a->density, b->density);
+  assert_int_not_equal(a->density, b->density);
   assert_true(b->temperature == CDL_NONE && b->color == CDL_NONE);
   assert_true(a->temperature_scale == 2);
   const cdl_SceneGrid *heat = &scene->grids[a->temperature];
-  assert_true(heat->size[0] == SX && heat->size[1] == SY && heat->size[2] == SZ);
-  assert_int_equal(scene->grids[a->color].channels, 3);
-  for (int32_t z = 0; z < SZ; z++)
-    for (int32_t x = 0; x < SX; x++) {
-      int hot = x + first[0] < 0 && z + first[2] < 16;
-      float wanted = hot ? 900 : 0; /* y from 3 to 7 of the file */
-      assert_true(value_of(heat, 0, (uint32_t)x, 4, (uint32_t)z) == wanted);
-      assert_true(value_of(heat, 0, (uint32_t)x, 5, (uint32_t)z) == 0);
-    }
+  const cdl_SceneGrid *dense = &scene->grids[a->density], *paint = &scene->grids[a->color];
+  const int32_t size[3] = {SX, SY, SZ}, corner[3] = {-8, 0, 8};
+  for (int k = 0; k < 3; k++) {
+    int32_t low = first[k] < corner[k] ? first[k] : corner[k];
+    int32_t end = first[k] + size[k] > corner[k] + 8 ? first[k] + size[k] : corner[k] + 8;
+    assert_int_equal(heat->low[k], low);
+    assert_int_equal(heat->size[k], end - low);
+    assert_true(dense->low[k] == low && dense->size[k] == heat->size[k]);
+    assert_true(paint->low[k] == low && paint->size[k] == heat->size[k]);
+  }
+  assert_int_equal(paint->channels, 3);
+  for (uint32_t z = 0; z < heat->size[2]; z++)
+    for (uint32_t y = 0; y < heat->size[1]; y++)
+      for (uint32_t x = 0; x < heat->size[0]; x++) {
+        int32_t at[3] = {heat->low[0] + (int32_t)x, heat->low[1] + (int32_t)y,
+                         heat->low[2] + (int32_t)z};
+        int hot = 1, in = 1;
+        for (int k = 0; k < 3; k++) {
+          hot &= at[k] >= corner[k] && at[k] < corner[k] + 8;
+          in &= at[k] >= first[k] && at[k] < first[k] + size[k];
+        }
+        assert_true(value_of(heat, 0, x, y, z) == (hot ? 900 : 0));
+        float own = in ? value_of(&scene->grids[b->density], 0, (uint32_t)(at[0] - first[0]),
+                                  (uint32_t)(at[1] - first[1]), (uint32_t)(at[2] - first[2]))
+                       : 0;
+        assert_true(value_of(dense, 0, x, y, z) == own);
+      }
   scene_free(scene);
 }
 
@@ -236,8 +254,8 @@ static void test_refused(void **state) {
   check_refused("\"uri\":\"a.vdb\",\"density\":\"bool\"", "its type is Tree_bool_5_4_3");
   check_refused("\"uri\":\"a.vdb\",\"density\":\"empty\"", "no active voxels");
   check_refused("\"uri\":\"a.vdb\",\"density\":\"wide\"", "box of more than 2048^3");
-  check_refused("\"uri\":\"a.vdb\",\"density\":\"paint\"", "three channels; a density has one");
-  check_refused("\"uri\":\"a.vdb\",\"temperature\":\"paint\"", "a temperature has one");
+  check_refused("\"uri\":\"a.vdb\",\"density\":\"paint\"", "it has three channels");
+  check_refused("\"uri\":\"a.vdb\",\"temperature\":\"paint\"", "it has three channels");
   check_refused("\"uri\":\"a.vdb\",\"color\":\"density\"", "a colour has three");
   check_refused("\"uri\":\"a.vdb\",\"temperature\":\"moved\"", "not that of the density");
   check_refused("\"uri\":\"b.vdb\"", "b.vdb: grid density:");
