@@ -26,6 +26,7 @@ typedef struct Profile {
   float slope;  /* diffusion: s; dipole: effective extinction times radius */
   float reach;  /* m */
   float depth;  /* dipole: that of the virtual source over that of the real one, > 1 */
+  float real;   /* dipole: what of its light is the real source's */
   int dipole;
 } Profile;
 
@@ -78,6 +79,10 @@ CDL_INLINE float profile_source_log_distance(float b, float x) {
 /* Distance over the plane from the foot of a source, over its depth, for exp(y) as above. */
 CDL_INLINE float profile_source_radius(float y) { return math_safe_sqrt(math_expm1(2.0f * y)); }
 
+CDL_INLINE float profile_real_share(float slope, float depth) {
+  return 1.0f / (1.0f + math_exp(-slope * (depth - 1.0f)));
+}
+
 CDL_INLINE Profile profile_make(float albedo, float radius, float depth, int dipole) {
   Profile p;
   p.radius = radius;
@@ -86,14 +91,10 @@ CDL_INLINE Profile profile_make(float albedo, float radius, float depth, int dip
   float a = math_saturate(albedo);
   float fit = fma(3.5f * (a - 0.8f), a - 0.8f, 1.9f - a);
   p.slope = dipole ? profile_dipole_slope(a, depth) : fit;
+  p.real = profile_real_share(p.slope, depth);
   float y = profile_source_log_distance(p.slope * depth, PROFILE_TAIL_DEPTH);
   p.reach = radius * (dipole ? depth * profile_source_radius(y) : PROFILE_DIFFUSION_REACH / fit);
   return p;
-}
-
-/* Of the dipole's light, the real source's. */
-CDL_INLINE float profile_real_share(Profile p) {
-  return 1.0f / (1.0f + math_exp(-p.slope * (p.depth - 1.0f)));
 }
 
 /* What a source z below the plane, sigma = b / z, gives at distance r of its foot, per area, times
@@ -106,22 +107,29 @@ CDL_INLINE float profile_source(float z, float b, float r) {
   return fma(b, inverse, z * inverse * inverse) * (inverse * fall);
 }
 
-/* Per area at distance r, without the end: what profile_sample draws. */
-CDL_INLINE float profile_density(Profile p, float r) {
-  float t = r * p.slope / p.radius;
-  float wide = math_exp(-0.333333333f * t);
-  float exponentials = 0.25f * fma(wide * wide, wide, wide) * p.slope / p.radius;
-  float diffusion = exponentials / math_max(r, 1e-12f);
+CDL_INLINE float profile_dipole(Profile p, float r) {
   float real = profile_source(p.radius, p.slope, r);
   float image = profile_source(p.radius * p.depth, p.slope * p.depth, r);
-  float dipole = math_lerp(image, real, profile_real_share(p));
-  float density = CDL_INV_2PI * (p.dipole ? dipole : diffusion);
-  return r <= p.reach ? density : 0.0f;
+  return CDL_INV_2PI * math_lerp(image, real, p.real);
+}
+
+CDL_INLINE float profile_diffusion(Profile p, float r) {
+  float inverse = p.slope / p.radius;
+  float wide = math_exp(-0.333333333f * (r * inverse));
+  float exponentials = 0.25f * fma(wide * wide, wide, wide) * inverse;
+  return CDL_INV_2PI * exponentials / math_max(r, 1e-12f);
+}
+
+/* Per area at distance r <= reach: what profile_sample draws. Not for code that is to be
+ * vectorised. */
+CDL_INLINE float profile_density(Profile p, float r) {
+  if (r > p.reach) return 0.0f;
+  return p.dipole ? profile_dipole(p, r) : profile_diffusion(p, r);
 }
 
 /* What the part within reach is to be multiplied by so that it is all. */
 CDL_INLINE float profile_gain(Profile p) {
-  float tail = p.dipole ? PROFILE_TAIL * (1.0f - profile_real_share(p)) : PROFILE_TAIL;
+  float tail = p.dipole ? PROFILE_TAIL * (1.0f - p.real) : PROFILE_TAIL;
   return 1.0f / (1.0f - tail);
 }
 
@@ -129,7 +137,7 @@ CDL_INLINE float profile_gain(Profile p) {
 CDL_INLINE float profile_sample(Profile p, float u, float w) {
   float x = -math_log1p(-u);
   float diffusion = x * p.radius / p.slope * (w < 0.25f ? 1.0f : 3.0f);
-  float times = w < profile_real_share(p) ? 1.0f : p.depth;
+  float times = w < p.real ? 1.0f : p.depth;
   float y = profile_source_log_distance(p.slope * times, x);
   float dipole = p.radius * times * profile_source_radius(y);
   return p.dipole ? dipole : diffusion;

@@ -127,6 +127,7 @@ CDL_INLINE Profile subsurface_load(CDL_GLOBAL const uint *params, uint channel, 
   p.slope = param_float(params, CDL_SUBSURFACE_SLOPE + channel, stride, i);
   p.reach = param_float(params, CDL_SUBSURFACE_REACH + channel, stride, i);
   p.depth = depth;
+  p.real = profile_real_share(p.slope, depth);
   p.dipole = dipole;
   return p;
 }
@@ -167,6 +168,7 @@ CDL_INLINE SubsurfaceProbe subsurface_probe(SubsurfaceProfiles profiles, vec3 ch
   p.radius = red ? profiles.x.radius : (green ? profiles.y.radius : p.radius);
   p.slope = red ? profiles.x.slope : (green ? profiles.y.slope : p.slope);
   p.reach = red ? profiles.x.reach : (green ? profiles.y.reach : p.reach);
+  p.real = red ? profiles.x.real : (green ? profiles.y.real : p.real);
   float r = profile_sample(p, u, w);
 
   int normal = axis < normal_share;
@@ -193,11 +195,6 @@ CDL_INLINE float subsurface_axis_density(SubsurfaceProfiles profiles, vec3 chann
   return x + y + z;
 }
 
-/* The profile without what lies beyond the distance d of the whole. */
-CDL_INLINE float subsurface_within(Profile p, float d, float density) {
-  return d <= p.reach ? density : 0.0f;
-}
-
 /* What light of `channels` becomes that comes out `offset` from where it went under, at a place
  * with the geometric normal `normal`: times the profile over the density with which probes find the
  * place, per area. */
@@ -209,10 +206,9 @@ CDL_INLINE vec3 subsurface_carry(SubsurfaceProfiles profiles, vec3 channels, Fra
   float x2 = away.x * away.x;
   float y2 = away.y * away.y;
   float z2 = away.z * away.z;
-  vec3 seen = channels; /* a probe of a channel ends at its reach */
-  seen.x = subsurface_within(profiles.x, d, channels.x);
-  seen.y = subsurface_within(profiles.y, d, channels.y);
-  seen.z = subsurface_within(profiles.z, d, channels.z);
+  vec3 seen =
+      v3(d <= profiles.x.reach ? channels.x : 0.0f, /* a channel's probes end at its reach */
+         d <= profiles.y.reach ? channels.y : 0.0f, d <= profiles.z.reach ? channels.z : 0.0f);
   float tangent_share = 0.5f * (1.0f - normal_share);
   float along_x = math_abs(faces.x) * subsurface_axis_density(profiles, seen, sqrt(y2 + z2));
   float along_y = math_abs(faces.y) * subsurface_axis_density(profiles, seen, sqrt(z2 + x2));
