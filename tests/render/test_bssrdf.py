@@ -6,6 +6,8 @@ import os
 
 import numpy as np
 
+import test_animation as animation
+import test_motion as motion
 from support.optics import fresnel_dielectric
 from support.render import render
 from support.scene import Scene
@@ -190,6 +192,24 @@ def test_two_bodies():
         check("%s: and stays there" % method, levels[1] < 1e-6, "%g" % levels[1])
 
 
+def test_moving():
+    """Bodies that turn while the shutter is open look like the mean of what stands still."""
+    def make(method):
+        def moving(shutter):
+            s = motion.film(shutter)
+            mesh = s.mesh(box((-0.4, -0.2, -0.3), (0.4, 0.2, 0.3)), s.material(cdl=dict(
+                model="subsurface", method=method, albedo=[0.8, 0.5, 0.3], radius=0.05)))
+            arm = s.node(children=[s.node(move(x, 0, 0), root=False, mesh=mesh) for x in (-1, 1)],
+                         scale=[1.0, 1.5, 0.7])
+            s.channel((arm, "rotation"), [0, 1], s.values(
+                [animation.turned(0), animation.turned(120, (0.2, 0.3, 1))], "VEC4"))
+            motion.lit(s)
+            return s
+        return moving
+    for method in METHODS if SOAK else METHODS[:1]:
+        motion.compare("%s: turning" % method, make(method), relative=0.03)
+
+
 def test_hostile():
     """Nothing that a file may say gives a sample that is no number, or light from nowhere."""
     for method in METHODS:
@@ -198,7 +218,7 @@ def test_hostile():
                      dict(g=-1, radius=[1e-12, 1, 1e12]), dict(alpha=[0.001, 1], ior=1)):
             s = Scene()
             material = s.material(cdl=dict(dict(albedo=0.8, radius=0.1), method=method,
-                                           model="subsurface", **{}) | more)
+                                           model="subsurface") | more)
             s.add(sphere(0.5, (0, 0, 0), 24, 12, smooth=True), material, turn((1, 2, 3), 30))
             s.add(sphere(1e-4, (0.7, 0, 0), 24, 12), material)
             s.add(quad((0, 0, -1), (2, 0, 0), (0, 2, 0)), material)
@@ -213,4 +233,4 @@ def test_hostile():
 
 if __name__ == "__main__":
     main(test_planes, test_lamps, test_walks, test_bodies, test_events, test_two_bodies,
-         test_hostile)
+         test_moving, test_hostile)
