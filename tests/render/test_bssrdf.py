@@ -213,7 +213,8 @@ def test_moving():
 def test_hostile():
     """Nothing that a file may say gives a sample that is no number, or light from nowhere."""
     for method in METHODS:
-        for more in (dict(radius=0), dict(radius=1e30), dict(radius=[0, 1e-20, 1e9], albedo=[0, 1, 1]),
+        for more in (dict(radius=0), dict(radius=1e30),
+                     dict(radius=[0, 1e-20, 1e9], albedo=[0, 1, 1]),
                      dict(albedo=0), dict(albedo=1, ior=3, alpha=1), dict(ior=0.01), dict(g=1),
                      dict(g=-1, radius=[1e-12, 1, 1e12]), dict(alpha=[0.001, 1], ior=1)):
             s = Scene()
