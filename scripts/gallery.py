@@ -107,6 +107,8 @@ GALLERY = [
          sweep("albedo", [[a] * 3 for a in (0.1, 0.4, 0.7, 0.95)])),
         ("radius, m", cdl("subsurface", albedo=[0.9, 0.6, 0.45]),
          sweep("radius", (0.005, 0.03, 0.1, 0.3, 1))),
+        ("method", cdl("subsurface", albedo=[0.9, 0.6, 0.45], radius=0.1),
+         sweep("method", ("random_walk", "diffusion", "dipole"))),
         ("radius by channel", cdl("subsurface", albedo=[0.85, 0.6, 0.5], alpha=0.2),
          sweep("radius", [[0.1, 0.05, 0.03], [0.3, 0.1, 0.05], [0.6, 0.12, 0.04]])),
         ("alpha", cdl("subsurface", albedo=[0.9, 0.85, 0.7], radius=0.1),

@@ -1,11 +1,13 @@
 #!/usr/bin/env python3
 """Writes the scenes of this project: make_scenes.py [FOLDER [NAME…]], into scenes/ beside this
-folder and all of them by default. Needs nothing but Python. README.md tells what each is for."""
+folder and all of them by default. Needs nothing but Python, and numpy for `fire`. README.md tells what each
+is for."""
 import math
 import os
 import sys
 
 from scene_demo import demo, distance, strokes
+from scene_volumes import bodies, fire
 from scene_kit import (CLAMP, FLOAT, MIRROR, NEAREST, REPEAT, Document, add, box, circle, cross,
                        data_uri, encoded, lathe, lattice, looking, mixed, png, quad,
                        radiance_hdr, sphere, sub, times, turn, unit)
@@ -275,7 +277,8 @@ def instances():
     return d
 
 
-SCENES = {f.__name__: f for f in (demo, cornell, materials, lights, media, textures, instances)}
+SCENES = {f.__name__: f for f in (demo, cornell, materials, lights, media, textures, instances,
+                                 bodies, fire)}
 
 
 def main():

@@ -23,9 +23,7 @@ static const ParamMember rough_dielectric[] = {
     {"abbe", CDL_ROUGH_DIELECTRIC_ABBE, 1, {0}, "abbeTexture", CHANNEL_R},
     END};
 static const ParamMember subsurface[] = {
-    ALPHA(CDL_ROUGH_DIELECTRIC_ALPHA, 0.3f),
-    {"ior", CDL_ROUGH_DIELECTRIC_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R},
-    END};
+    ALPHA(CDL_BODY_ALPHA, 0.3f), {"ior", CDL_BODY_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R}, END};
 static const ParamMember profile[] = {
     ALPHA(CDL_SUBSURFACE_ALPHA, 0.3f),
     {"ior", CDL_SUBSURFACE_IOR, 1, {1.4f}, "iorTexture", CHANNEL_R},
@@ -82,7 +80,7 @@ static const Model models[] = {
     {"plastic", CDL_MODEL_PLASTIC, REFLECTANCE, 0.5f, plastic},
     {"oren_nayar", CDL_MODEL_OREN_NAYAR, REFLECTANCE, 0.5f, oren_nayar},
     {"disney", CDL_MODEL_DISNEY, "baseColor", "baseColorTexture", 0.5f, disney},
-    {"subsurface", CDL_MODEL_ROUGH_DIELECTRIC, NULL, NULL, 1, subsurface},
+    {"subsurface", CDL_MODEL_BODY, NULL, NULL, 1, subsurface},
     {"interface", CDL_MODEL_INTERFACE, NULL, NULL, 1, none},
 };
 
@@ -148,6 +146,7 @@ static void read_flags(const json_t *json, cdl_SceneMaterial *material) {
   material->anisotropic = alpha[0] != alpha[1] || json_get_number(json, "anisotropic", 0) != 0;
   material->transmits = material->model == CDL_MODEL_DIELECTRIC ||
                         material->model == CDL_MODEL_ROUGH_DIELECTRIC ||
+                        material->model == CDL_MODEL_BODY ||
                         (material->model == CDL_MODEL_DISNEY &&
                          (json_get_number(json, "specTrans", 0) > 0 || material->thin));
 }
@@ -200,7 +199,6 @@ cdl_Status build_cdl_material(Builder *builder, uint32_t index, const json_t *js
   for (int c = 0; c < 3; c++) material->base[c] = model->base;
   material->base_texture = material->coat_normal_texture = texture_ref_none();
   read_flags(json, material);
-  material->energy_compensation |= model->members == subsurface; /* light meets it many times */
   drop_compensation(builder, at, material);
   cdl_Status status = CDL_OK;
   if (model->color) {

@@ -49,10 +49,14 @@ static double inner_reflectance(double ior) {
 }
 
 /* Albedo of one isotropic collision under a boundary such that the body reflects `albedo` of the
- * light that has entered it: what the boundary sends back in from below is made up for. */
+ * light that has entered it: what the boundary sends back in from below is made up for. A half space
+ * reflects (1 - s) (1 - 0.139 s) / (1 + 1.17 s) of diffuse light, s^2 = 1 - albedo of a collision
+ * (van de Hulst 1980), which is solved for s. */
 static double body_albedo(double albedo, double ior) {
-  double inner = inner_reflectance(ior);
-  return single_albedo((float)(albedo / (1 - inner + inner * albedo)));
+  double inner = inner_reflectance(ior), body = albedo / (1 - inner + inner * albedo);
+  double b = 1.139 + 1.17 * body;
+  double s = (b - sqrt(b * b - 4 * 0.139 * (1 - body))) / (2 * 0.139);
+  return fmin(fmax(1 - s * s, 0), 1);
 }
 
 /* Scattering that favours one direction needs as much more of it as leaves the diffusion the same

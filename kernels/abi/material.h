@@ -18,12 +18,13 @@
 #define CDL_MODEL_RETROREFLECTOR 7u
 #define CDL_MODEL_DISNEY 8u
 #define CDL_MODEL_GLTF 9u
-#define CDL_MODEL_GLTF_LAYERED 10u /* glTF with layers that extensions add */
-#define CDL_MODEL_SUBSURFACE 11u
-#define CDL_MODEL_SUBSURFACE_EXIT 12u /* where light from under such a surface comes out again */
-#define CDL_MODEL_DIFFUSE 13u
-#define CDL_MODEL_INTERFACE 14u /* the boundary of a medium; has no queue of its own */
-#define CDL_MODEL_COUNT 15u
+#define CDL_MODEL_GLTF_LAYERED 10u    /* glTF with layers that extensions add */
+#define CDL_MODEL_BODY 11u            /* the boundary of a subsurface medium */
+#define CDL_MODEL_SUBSURFACE 12u      /* light under it follows a profile */
+#define CDL_MODEL_SUBSURFACE_EXIT 13u /* where light from under such a surface comes out again */
+#define CDL_MODEL_DIFFUSE 14u
+#define CDL_MODEL_INTERFACE 15u /* the boundary of a medium; has no queue of its own */
+#define CDL_MODEL_COUNT 16u
 #define CDL_MODEL_FIRST_LIT CDL_MODEL_ROUGH_DIELECTRIC
 #define CDL_MODEL_FIRST_PARAMETERS CDL_MODEL_DIELECTRIC
 #define CDL_MODEL_LAST_PARAMETERS CDL_MODEL_SUBSURFACE_EXIT
@@ -41,6 +42,7 @@
   M(DISNEY, disney, CDL_DISNEY_PARAMS)                                                             \
   M(GLTF, gltf, CDL_GLTF_PARAMS)                                                                   \
   M(GLTF_LAYERED, gltf_layered, CDL_GLTF_LAYERED_PARAMS)                                           \
+  M(BODY, body, CDL_BODY_PARAMS)                                                                   \
   M(SUBSURFACE, subsurface, CDL_SUBSURFACE_PARAMS)                                                 \
   M(SUBSURFACE_EXIT, subsurface_exit, CDL_SUBSURFACE_PARAMS)                                       \
   M(DIFFUSE, diffuse, 0)
@@ -56,7 +58,7 @@
 #define CDL_MATERIAL_THIN 128u    /* a sheet: what goes in comes out on the other side */
 #define CDL_MATERIAL_ENERGY_COMPENSATED 256u
 #define CDL_MATERIAL_NORMAL_MAPPED 512u /* and nothing goes through */
-#define CDL_MATERIAL_DIPOLE 1024u /* the profile of a subsurface model; else diffusion's */
+#define CDL_MATERIAL_DIPOLE 1024u       /* the profile of a subsurface model; else diffusion's */
 
 /* A texture look-up: u' = m0 u + m1 v + m2, v' = m3 u + m4 v + m5. */
 typedef struct cdl_TextureSlot {

@@ -79,6 +79,9 @@ enum { CDL_PARAM(OREN_NAYAR, ROUGHNESS, 1), CDL_OREN_NAYAR_PARAMS };
 /* Microfacet alpha of the coat along tangent and bitangent; its index, [1,3]. */
 enum { CDL_PARAM(PLASTIC, ALPHA, 2), CDL_PARAM(PLASTIC, IOR, 1), CDL_PLASTIC_PARAMS };
 
+/* As plastic's. */
+enum { CDL_PARAM(BODY, ALPHA, 2), CDL_PARAM(BODY, IOR, 1), CDL_BODY_PARAMS };
+
 /* As plastic's; mean free paths in m. What profiles have found from them and from the albedo, filled
  * in by shading: bsdf/profile.h. */
 enum {

@@ -109,6 +109,14 @@
 #define bsdf_params gltf_layered_params
 #define bsdf_evaluate gltf_layered_evaluate
 #define bsdf_sample_model gltf_layered_sample
+#elif CDL_SHADE_MODEL == CDL_MODEL_BODY
+#include "bsdf/body.h"
+#define CDL_SHADE_LIT 1
+#define CDL_SHADE_TRANSMITS 1
+#define BsdfParams BodyParams
+#define bsdf_params body_params
+#define bsdf_evaluate body_evaluate
+#define bsdf_sample_model body_sample
 #elif CDL_SHADE_MODEL == CDL_MODEL_SUBSURFACE
 #include "bsdf/subsurface.h"
 #define CDL_SHADE_LIT 1

@@ -18,6 +18,18 @@
     }                                                                                              \
   }
 
+/* Smooth: a delta lobe over a cosine. */
+#define BODY(x, y, f, ior, in)                                                                     \
+  {                                                                                                \
+    .name = "body " #x " " #y " " #f " " #ior " " #in, .model = BSDF_body, .base = WHITE,          \
+    .flags = f, .inside = in, .width = (x > 0 && !(in)) ? (x < y ? x : y) : 1,                     \
+    .center = (x > 0 && !(in)) ? BSDF_CENTER_MIRROR : BSDF_CENTER_NORMAL, .eta = ior, .words = {   \
+      x,                                                                                           \
+      y,                                                                                           \
+      ior                                                                                          \
+    }                                                                                              \
+  }
+
 #define DISNEY_WORD(name) [CDL_DISNEY_##name]
 /* Tinted by `tint` and its powers; the last are more members. Compensation is interpolated, and off
  * by up to 0.016 where little is transmitted (energy.h). */
@@ -58,6 +70,14 @@
   }
 
 const BsdfCase bsdf_cases_glass[] = {
+    BODY(0.0f, 0.0f, 0, 1.4f, 0),
+    BODY(0.0f, 0.0f, 0, 1.4f, 1),
+    BODY(0.3f, 0.3f, 0, 1.4f, 0),
+    BODY(0.3f, 0.3f, 0, 1.4f, 1),
+    BODY(0.05f, 0.05f, BECKMANN, 1.5f, 0),
+    BODY(0.6f, 0.2f, SEPARABLE, 2.2f, 0),
+    BODY(0.6f, 0.2f, SEPARABLE, 2.2f, 1),
+    BODY(1.0f, 1.0f, 0, 1.0f, 0),
     FROSTED(0.001f, 0.001f, 0, 1.5f, 0),
     FROSTED(0.02f, 0.02f, 0, 1.5f, 0),
     FROSTED(0.02f, 0.02f, 0, 1.5f, 1),

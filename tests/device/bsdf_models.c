@@ -1,6 +1,7 @@
 #include "tests/device/bsdf_models.h"
 #include "tests/device/bsdf_setup.h"
 
+#include "bsdf/body.h"
 #include "bsdf/conductor.h"
 #include "bsdf/dielectric.h"
 #include "bsdf/diffuse.h"
@@ -52,6 +53,7 @@ static const BsdfRange dielectric_ranges[] = {GLASS_IOR, ABBE};
 static const BsdfRange rough_dielectric_ranges[] = {ALPHA, ALPHA, GLASS_IOR, ABBE};
 static const BsdfRange oren_nayar_ranges[] = {UNIT};
 static const BsdfRange plastic_ranges[] = {ALPHA, ALPHA, IOR};
+static const BsdfRange body_ranges[] = {ALPHA, ALPHA, IOR};
 static const BsdfRange disney_ranges[] = {UNIT,      UNIT, UNIT, UNIT, UNIT, UNIT,
                                           UNIT,      UNIT, UNIT, UNIT, UNIT, {0.5f, 2.5f, 0},
                                           {0, 2, 0}, UNIT, UNIT};
@@ -69,8 +71,11 @@ static const BsdfRange gltf_ranges[] = {UNIT, UNIT, IOR};
 #define M(MODEL, name, count)                                                                      \
   _Static_assert(count == 0 || sizeof name##_ranges / sizeof *name##_ranges == (count), #name);    \
   enum { name##_words = (count), name##_is_tested = BSDF_##name };
-enum { BSDF_unlit }; /* shows its base colour and scatters nothing */
-static const BsdfRange unlit_ranges[1];
+/* The first shows its base colour and scatters nothing; what goes under the others leaves
+ * elsewhere: tests/unit/test_bssrdf.c, tests/render/test_bssrdf.py. */
+enum { BSDF_unlit, BSDF_subsurface, BSDF_subsurface_exit };
+static const BsdfRange unlit_ranges[1], subsurface_ranges[CDL_SUBSURFACE_PARAMS],
+    subsurface_exit_ranges[CDL_SUBSURFACE_PARAMS];
 CDL_SHADED_MODELS(M)
 #undef M
 

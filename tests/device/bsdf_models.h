@@ -22,6 +22,7 @@
   MODEL(plastic, PlasticParams, 0, BECKMANN | SEPARABLE, 100.0f)                                   \
   MODEL(rough_dielectric, RoughDielectricParams, 1, BECKMANN | SEPARABLE | COMPENSATED | THIN,     \
         1e6f)                                                                                      \
+  MODEL(body, BodyParams, 1, BECKMANN | SEPARABLE, 1000.0f)                                        \
   MODEL(disney, DisneyParams, 1, 0, 1000.0f)                                                       \
   MODEL(gltf_layered, GltfLayeredParams, 1, 0, 1e6f)
 
