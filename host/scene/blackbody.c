@@ -2,7 +2,7 @@
 
 #include "lib/math.h"
 
-/* exp(-((wavelength - middle) / (2 width)) ^ 2 ...) of two unlike sides. */
+/* A Gauss curve of two unlike sides; `below` and `above` are one over their widths, 1/nm. */
 static float lobe(float wavelength, float middle, float below, float above) {
   float t = (wavelength - middle) * (wavelength < middle ? below : above);
   return math_exp(-0.5f * t * t);

@@ -1,6 +1,7 @@
 /* medium.c: what fills a surface or the scene. */
 #include <math.h>
 
+#include "bsdf/fresnel.h"
 #include "lib/math.h"
 #include "scene/build.h"
 
@@ -41,19 +42,13 @@ static float single_albedo(float many) {
   return (float)fmin(fmax(1 - s * s, 0), 1);
 }
 
-/* Mean reflectance of a smooth boundary for diffuse light from within (Egan and Hilgeman 1973). */
-static double inner_reflectance(double ior) {
-  if (ior < 1.0)
-    return fmax(-0.4399 + 0.7099 / ior - 0.3319 / (ior * ior) + 0.0636 / (ior * ior * ior), 0);
-  return fmin(fmax(-1.4399 / (ior * ior) + 0.7099 / ior + 0.6681 + 0.0636 * ior, 0), 1);
-}
-
 /* Albedo of one isotropic collision under a boundary such that the body reflects `albedo` of the
- * light that has entered it: what the boundary sends back in from below is made up for. A half space
- * reflects (1 - s) (1 - 0.139 s) / (1 + 1.17 s) of diffuse light, s^2 = 1 - albedo of a collision
- * (van de Hulst 1980), which is solved for s. */
+ * light that has entered it: what the boundary sends back in from below is made up for. A half
+ * space reflects (1 - s) (1 - 0.139 s) / (1 + 1.17 s) of diffuse light, s^2 = 1 - albedo of a
+ * collision (van de Hulst 1980), which is solved for s. */
 static double body_albedo(double albedo, double ior) {
-  double inner = inner_reflectance(ior), body = albedo / (1 - inner + inner * albedo);
+  double inner = fresnel_inner_mean(fminf(fmaxf((float)ior, 1), 3));
+  double body = albedo / (1 - inner + inner * albedo);
   double b = 1.139 + 1.17 * body;
   double s = (b - sqrt(b * b - 4 * 0.139 * (1 - body))) / (2 * 0.139);
   return fmin(fmax(1 - s * s, 0), 1);

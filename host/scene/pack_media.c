@@ -39,7 +39,16 @@ static void pack_medium(const cdl_SceneMedium *from, cdl_Medium *to) {
   to->emissive = from->emission[0] > 0 || from->emission[1] > 0 || from->emission[2] > 0;
 }
 
-/* Media whose grid is placed by a node follow all others, one for every instance. */
+/* The instance before i that holds the same medium of the same node, another part of its surface:
+ * primitives of a node are neighbours. CDL_NONE: there is none. */
+static uint32_t same_body(const cdl_Scene *scene, uint32_t i) {
+  uint32_t medium = grid_medium(scene, &scene->instances[i]);
+  for (uint32_t k = i; k > 0 && scene->instances[k - 1].object == scene->instances[i].object; k--)
+    if (grid_medium(scene, &scene->instances[k - 1]) == medium) return k - 1;
+  return CDL_NONE;
+}
+
+/* Media whose grid is placed by a node follow all others, one for every node. */
 static void place_media(const cdl_Scene *scene, cdl_Pack *pack) {
   uint32_t next = scene->medium_count + 1u;
   for (uint32_t i = 0; i < scene->instance_count; i++) {
@@ -47,6 +56,11 @@ static void place_media(const cdl_Scene *scene, cdl_Pack *pack) {
     uint32_t medium = scene->materials[scene->meshes[instance->mesh].material].medium;
     pack->instance_media[i] = medium == CDL_NONE ? CDL_MEDIUM_VACUUM : medium + 1u;
     if (grid_medium(scene, instance) == CDL_NONE) continue;
+    uint32_t body = same_body(scene, i);
+    if (body != CDL_NONE) {
+      pack->instance_media[i] = pack->instance_media[body];
+      continue;
+    }
     pack->media[next] = pack->media[medium + 1u];
     place(&scene->media[medium], instance->to_world, &pack->media[next]);
     pack->instance_media[i] = next++;
@@ -57,7 +71,8 @@ cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack
   static const float identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
   size_t count = (size_t)scene->medium_count + 1;
   for (uint32_t i = 0; i < scene->instance_count; i++)
-    count += grid_medium(scene, &scene->instances[i]) != CDL_NONE;
+    count +=
+        grid_medium(scene, &scene->instances[i]) != CDL_NONE && same_body(scene, i) == CDL_NONE;
   if (count > 0xfffe)
     return log_fail(log, CDL_BAD_INPUT,
                     "%s: %zu media are more than the 65533 that fit; grids count once for every "

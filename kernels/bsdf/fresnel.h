@@ -107,4 +107,11 @@ CDL_INLINE vec3 fresnel_schlick_rgb(vec3 f0, float cos_i) {
 /* Reflectance at normal incidence. */
 CDL_INLINE float fresnel_f0(float eta) { return math_sqr((1.0f - eta) / (1.0f + eta)); }
 
+/* Mean reflectance of a smooth boundary for diffuse light from within, eta in [1,3] (a fit by Egan
+ * and Hilgeman 1973). */
+CDL_INLINE float fresnel_inner_mean(float eta) {
+  float inverse = 1.0f / eta;
+  return fma(fma(-1.4399f, inverse, 0.7099f), inverse, fma(0.0636f, eta, 0.6681f));
+}
+
 #endif

@@ -1,7 +1,8 @@
 /* model.h: the one model that a shading kernel is built for, under names that do not say which.
  * CDL_SHADE_LIT: it has lobes that a sampled light can hit. CDL_SHADE_TRANSMITS: paths can cross
  * it. CDL_SHADE_ENERGY: it takes the tables of energy.h. CDL_SHADE_ENTERS: `transmitted` means that
- * the path goes under the surface; CDL_SHADE_LEAVES: it comes out from there. */
+ * the path goes under the surface; CDL_SHADE_LEAVES: it comes out from there. CDL_SHADE_WALKS: what
+ * goes in, or stays in, is on a walk that counts as one event with that of coming out. */
 #ifndef CDL_BSDF_MODEL_H
 #define CDL_BSDF_MODEL_H
 
@@ -113,6 +114,7 @@
 #include "bsdf/body.h"
 #define CDL_SHADE_LIT 1
 #define CDL_SHADE_TRANSMITS 1
+#define CDL_SHADE_WALKS 1
 #define BsdfParams BodyParams
 #define bsdf_params body_params
 #define bsdf_evaluate body_evaluate

@@ -15,6 +15,7 @@
 #ifndef CDL_BSDF_PROFILE_H
 #define CDL_BSDF_PROFILE_H
 
+#include "bsdf/fresnel.h"
 #include "lib/math.h"
 
 #define PROFILE_TAIL 1e-3f
@@ -32,8 +33,7 @@ typedef struct Profile {
 
 /* Profile.depth of a boundary with the relative index eta, [1,3]. */
 CDL_INLINE float profile_depth(float eta) {
-  float inverse = 1.0f / eta;
-  float f = fma(fma(-1.4399f, inverse, 0.7099f), inverse, fma(0.0636f, eta, 0.6681f));
+  float f = fresnel_inner_mean(eta);
   return 1.0f + 1.33333333f * (1.0f + f) / (1.0f - f);
 }
 

@@ -22,7 +22,7 @@
 #define CDL_PAIR_TEXEL 5u       /* the point within a cell of the environment */
 #define CDL_PAIR_OPACITY 6u     /* whether a half transparent surface is passed */
 #define CDL_PAIR_CHANNEL 7u     /* which colour channel goes on alone; which exit a probe takes */
-#define CDL_PAIR_NEAR_LIGHT 8u  /* which light a distance is drawn near to; whether */
+#define CDL_PAIR_NEAR_LIGHT 8u  /* which light a distance is drawn near to: slot, slot or alias */
 #define CDL_PAIRS_PER_VERTEX 9u
 
 /* Who draws: the pixel's key and the number of the sample. */

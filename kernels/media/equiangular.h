@@ -14,9 +14,8 @@ typedef struct EquiAngular {
   float low, high; /* angles at which the stretch begins and ends, seen from the point */
 } EquiAngular;
 
-#define EQUIANGULAR_MOST                                                                           \
-  0.25f /* of all distances: surfaces behind the fog must be found as well                         \
-         */
+/* The most of all distances: what lies behind the fog must be found as well. */
+#define EQUIANGULAR_MOST 0.25f
 
 CDL_INLINE EquiAngular equiangular_none(void) {
   EquiAngular e = {0.0f, 0.0f, 1.0f, 0.0f, 1.0f};

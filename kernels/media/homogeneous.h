@@ -56,21 +56,23 @@ CDL_INLINE vec3 homogeneous_channels(vec3 throughput) {
 /* Samples the free flight in a medium up to t_max, which may be infinite.
  * One channel, drawn by u_channel, gives the distance; the weight divides by the probability over
  * all of them (one-sample MIS, balance heuristic), and so it does over `near`, by which the
- * distance is drawn instead where u_strategy is below its chance. A medium that only absorbs is
- * never stopped in: it weights by exp(-sigma t_max), vacuum by 1. */
+ * distance is drawn where u_distance is below its chance: what is left of the number is as evenly
+ * spread over samples. A medium that only absorbs is never stopped in: it weights by
+ * exp(-sigma t_max), vacuum by 1. */
 CDL_INLINE FreeFlight homogeneous_sample(vec3 sigma_a, vec3 sigma_s, vec3 throughput, float t_max,
-                                         float u_channel, float u_distance, EquiAngular near,
-                                         float u_strategy) {
+                                         float u_channel, float u_distance, EquiAngular near) {
   FreeFlight flight;
   vec3 sigma_t = v3_add(sigma_a, sigma_s);
   vec3 q = homogeneous_channels(throughput);
   int scatters = v3_max(sigma_s) > 0.0f;
   float beyond_x = u_channel < q.x + q.y ? sigma_t.y : sigma_t.z;
   float sigma = u_channel < q.x ? sigma_t.x : beyond_x;
-  float drawn = -math_log(1.0f - u_distance) / (sigma > 0.0f ? sigma : 1.0f);
   float chance = scatters ? near.chance : 0.0f;
-  int draws_near = u_strategy < chance;
-  drawn = draws_near ? equiangular_sample(near, t_max, u_distance) : drawn;
+  int draws_near = u_distance < chance;
+  float of_near = u_distance / (draws_near ? chance : 1.0f);
+  float of_others = math_min((u_distance - chance) / (1.0f - chance), CDL_ONE_MINUS_EPSILON);
+  float drawn = -math_log(1.0f - math_max(of_others, 0.0f)) / (sigma > 0.0f ? sigma : 1.0f);
+  drawn = draws_near ? equiangular_sample(near, t_max, of_near) : drawn;
   flight.scattered = scatters && (draws_near || (sigma > 0.0f && drawn < t_max));
   flight.t = flight.scattered ? drawn : t_max;
   vec3 t = homogeneous_transmittance(sigma_t, flight.t);

@@ -13,11 +13,11 @@
 CDL_INLINE EquiAngular near_light(CDL_CONSTANT cdl_Params *params,
                                   CDL_GLOBAL const cdl_Light *lights,
                                   CDL_GLOBAL const cdl_AliasEntry *light_table, uint bits,
-                                  vec3 origin, vec3 direction, float t_max, float sigma) {
+                                  uint keep_bits, vec3 origin, vec3 direction, float t_max,
+                                  float sigma) {
 #ifdef CDL_NEAR_LIGHTS
-  float keep = rng_to_unit(bits * params->light_count);
   CDL_GLOBAL const cdl_Light *light =
-      lights + alias_pick(light_table, params->light_count, bits, keep);
+      lights + alias_pick(light_table, params->light_count, bits, rng_to_unit(keep_bits));
   float third = light->type == CDL_LIGHT_TRIANGLE ? 0.333333343f : 0.0f;
   vec3 point = v3(fma(light->e1[0] + light->e2[0], third, light->p[0]),
                   fma(light->e1[1] + light->e2[1], third, light->p[1]),
@@ -29,6 +29,16 @@ CDL_INLINE EquiAngular near_light(CDL_CONSTANT cdl_Params *params,
 #else
   return equiangular_none();
 #endif
+}
+
+/* Whether what the ray meets behind the medium may be bright by itself: an emitter, or the sky. */
+CDL_INLINE int shines(uint queue) {
+#ifdef CDL_ENVIRONMENT_LIGHT
+  int sky = queue == CDL_QUEUE_ESCAPED;
+#else
+  int sky = 0;
+#endif
+  return sky | ((queue >= CDL_QUEUE_MODELS) & ((queue - CDL_QUEUE_MODELS) & 1u));
 }
 
 CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *restrict params,
@@ -66,22 +76,20 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
     int glows = alive & (medium->emissive != 0u);
     state_add_radiance(slots, wave->slots, slot, v3_select(glows, emitted, v3_all(0.0f)));
 
-    uint light_bits, strategy_bits;
-    vertex_random_bits(random, counts_vertex(counts), CDL_PAIR_NEAR_LIGHT, &light_bits,
-                       &strategy_bits);
+    uint light_bits, keep_bits;
+    vertex_random_bits(random, counts_vertex(counts), CDL_PAIR_NEAR_LIGHT, &light_bits, &keep_bits);
     vec3 direction = state_vec3(path, CDL_PATH_DIRECTION, stride, i);
     vec3 begin = v3_madd(state_vec3(path, CDL_PATH_ORIGIN, stride, i), passed, direction);
     vec3 extinction = v3_add(absorption, scattering);
     float sigma = (extinction.x + extinction.y + extinction.z) * 0.333333343f;
-    EquiAngular near =
-        near_light(params, lights, light_table, light_bits, begin, direction, distance, sigma);
+    EquiAngular near = near_light(params, lights, light_table, light_bits, keep_bits, begin,
+                                  direction, distance, sigma);
     /* Only straight from the camera, as every flight that ends behind the fog weighs the path more,
-     * which adds up over bounces; and not before what shines itself, which would flicker. */
-    int dark = (queue >= CDL_QUEUE_MODELS) & ((queue & 1u) == (CDL_QUEUE_MODELS & 1u));
+     * which adds up over bounces; and not before what shines, which would flicker. */
     int fresh = (counts_depth(counts) == 0u) & (params->max_depth > 0u) & (medium->walk == 0u);
-    near.chance = dark & fresh ? near.chance : 0.0f;
-    FreeFlight flight = homogeneous_sample(absorption, scattering, throughput, distance, channel,
-                                           chance, near, rng_to_unit(strategy_bits));
+    near.chance = fresh & !shines(queue) ? near.chance : 0.0f;
+    FreeFlight flight =
+        homogeneous_sample(absorption, scattering, throughput, distance, channel, chance, near);
     int scattered = alive & flight.scattered;
     vec3 next = v3_mul(throughput, flight.weight);
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, v3_select(alive, next, throughput));

@@ -225,8 +225,12 @@ CDL_FUNCTION void shade_strip(size_t first, CDL_CONSTANT cdl_Params *restrict pa
     state_set_vec3(path, CDL_PATH_THROUGHPUT, stride, i, next);
     state_set_float(path, CDL_PATH_PDF, stride, i, sample.delta ? 0.0f : sample.pdf);
     state_set_float(path, CDL_PATH_PASSED, stride, i, 0.0f);
-#ifdef CDL_SHADE_LEAVES
+#if defined(CDL_SHADE_LEAVES)
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_passed(at.counts));
+#elif defined(CDL_SHADE_WALKS)
+    int within = at.front ? through : !through;
+    state_set_uint(path, CDL_PATH_COUNTS, stride, i,
+                   within ? counts_passed(at.counts) : counts_scattered(at.counts));
 #else
     state_set_uint(path, CDL_PATH_COUNTS, stride, i, counts_scattered(at.counts));
 #endif

@@ -1,12 +1,16 @@
 /* walk_subsurface: a step of the walk under a surface: light that its inside scatters goes on by
- * the phase function. The whole walk counts as one scattering event, with that of entering, and no
- * light is sampled on it, because the surface would refract its way. */
+ * the phase function. The whole walk counts as one scattering event, with that of leaving, and no
+ * light is sampled on it, because the surface is in the way. */
 #include "lib/stage.h"
 
 #include "lib/dimensions.h"
 #include "lib/state.h"
 #include "media/phase.h"
 #include "media/stack.h"
+
+/* Steps of a walk, in units of the limit of passes: more are not taken. Where nothing is absorbed
+ * and nothing comes out soon, a share of 1 / sqrt(steps) of the light is still inside. */
+#define WALK_LIMIT_PASSES 4u
 
 /* The throughput with which the walk goes on: what is faint is ended by chance. */
 CDL_INLINE vec3 walk_roulette(vec3 throughput, float chance) {
@@ -35,7 +39,8 @@ CDL_FUNCTION void walk_subsurface_strip(size_t first, CDL_CONSTANT cdl_Params *r
     vertex_random(random, counts_vertex(counts), CDL_PAIR_LOBE, &lobe, &chance);
     PhaseSample sample = phase_sample(phase, direction, u, v, lobe);
     vec3 next = walk_roulette(state_vec3(path, CDL_PATH_THROUGHPUT, stride, i), chance);
-    next = v3_select(counts_passes(counts) < params->pass_limit, next, v3_all(0.0f));
+    next = v3_select(counts_passes(counts) < WALK_LIMIT_PASSES * params->pass_limit, next,
+                     v3_all(0.0f));
 
     state_set_vec3(path, CDL_PATH_ORIGIN, stride, i, position);
     state_set_vec3(path, CDL_PATH_DIRECTION, stride, i, sample.wi);

@@ -14,7 +14,7 @@ __kernel void sample_flight(__global const float *in, __global float *out) {
   uint seed = as_uint(in[10]);
   FreeFlight f =
       homogeneous_sample(v3(in[0], in[1], in[2]), v3(in[3], in[4], in[5]), v3(in[6], in[7], in[8]),
-                         in[9], test_unit(seed, 0u), test_unit(seed, 1u), equiangular_none(), 1.0f);
+                         in[9], test_unit(seed, 0u), test_unit(seed, 1u), equiangular_none());
   ROW(0) = f.t;
   ROW(1) = (float)f.scattered;
   ROW(2) = f.weight.x;
@@ -29,9 +29,8 @@ __kernel void sample_flight_near(__global const float *in, __global float *out) 
   vec3 sigma_a = v3(in[0], in[1], in[2]), sigma_s = v3(in[3], in[4], in[5]);
   EquiAngular near = equiangular_toward(v3(in[11], 0.0f, in[12]), v3_all(0.0f),
                                         v3(0.0f, 0.0f, 1.0f), in[9], 1e-3f);
-  FreeFlight f =
-      homogeneous_sample(sigma_a, sigma_s, v3(in[6], in[7], in[8]), in[9], test_unit(seed, 0u),
-                         test_unit(seed, 1u), near, test_unit(seed, 2u));
+  FreeFlight f = homogeneous_sample(sigma_a, sigma_s, v3(in[6], in[7], in[8]), in[9],
+                                    test_unit(seed, 0u), test_unit(seed, 1u), near);
   ROW(0) = f.t;
   ROW(1) = (float)f.scattered;
   ROW(2) = f.weight.x;
