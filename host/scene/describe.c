@@ -159,6 +159,21 @@ static void print_choices(FILE *out, const cdl_Scene *scene) {
     fprintf(out, "      %s\n", scene->variants[i]);
 }
 
+static void print_media(FILE *out, const cdl_Scene *scene) {
+  fprintf(out, "media       %u%s\n", scene->medium_count,
+          scene->medium != CDL_NONE ? ", one of them fills the scene" : "");
+  for (uint32_t i = 0; i < scene->medium_count; i++) {
+    const cdl_SceneMedium *m = &scene->media[i];
+    fprintf(out, "  %2u  %-12s absorbs %.4g %.4g %.4g, scatters %.4g %.4g %.4g 1/m", i,
+            m->phase.type, m->absorption[0], m->absorption[1], m->absorption[2], m->scattering[0],
+            m->scattering[1], m->scattering[2]);
+    if (m->density != CDL_NONE) fprintf(out, ", density of grid %u", m->density);
+    if (m->temperature != CDL_NONE) fprintf(out, ", temperature of grid %u", m->temperature);
+    if (m->color != CDL_NONE) fprintf(out, ", color of grid %u", m->color);
+    fputc('\n', out);
+  }
+}
+
 static void print_text(FILE *out, const cdl_Scene *scene, const Totals *totals) {
   const float(*b)[3] = scene->bounds;
   fprintf(out, "%s\n", scene->path);
@@ -171,10 +186,7 @@ static void print_text(FILE *out, const cdl_Scene *scene, const Totals *totals) 
     fprintf(out, "bounds      %.4g %.4g %.4g  to  %.4g %.4g %.4g m\n", b[0][0], b[0][1], b[0][2],
             b[1][0], b[1][1], b[1][2]);
   print_lights(out, scene, totals);
-  fprintf(out, "media       %u%s\n", scene->medium_count,
-          scene->medium != CDL_NONE ? ", one of them fills the scene" : "");
-  for (uint32_t i = 0; i < scene->medium_count; i++)
-    fprintf(out, "  %2u  %s\n", i, scene->media[i].phase.type);
+  print_media(out, scene);
   print_grids(out, scene);
   fprintf(out, "textures    %u on %u %s\n", scene->texture_count, scene->image_count,
           scene->image_count == 1 ? "image" : "images");

@@ -45,6 +45,19 @@ static cdl_Status build_environment(Builder *builder, uint32_t scene, const json
   return CDL_OK;
 }
 
+/* A medium that glows without end and absorbs nothing of it. */
+static cdl_Status check_glow(Builder *builder, const char *at) {
+  if (builder->scene->medium == CDL_NONE) return CDL_OK;
+  const cdl_SceneMedium *m = &builder->scene->media[builder->scene->medium];
+  for (int c = 0; c < 3; c++)
+    if (m->density == CDL_NONE && m->emission[c] > 0 && !(m->absorption[c] + m->scattering[c] > 0))
+      return document_fail(
+          builder->doc, at, "VALUE_NOT_IN_RANGE",
+          "a medium that fills the scene and glows without absorbing is infinitely "
+          "bright; give it absorption in the channels of its emission.");
+  return CDL_OK;
+}
+
 cdl_Status build_scene_extensions(Builder *builder, uint32_t index, const json_t *json) {
   const json_t *environment = json_get_extension(json, "CDL_environment");
   const json_t *medium = json_get_extension(json, "CDL_medium");
@@ -53,5 +66,5 @@ cdl_Status build_scene_extensions(Builder *builder, uint32_t index, const json_t
   if (!status && medium)
     status = build_medium(builder, AT("/scenes/%u/extensions/CDL_medium", index), medium,
                           &builder->scene->medium);
-  return status;
+  return status ? status : check_glow(builder, AT("/scenes/%u/extensions/CDL_medium", index));
 }

@@ -219,6 +219,7 @@ const char *scene_model_name(uint32_t model) {
 #define MODEL_NAME(id, name, words) [CDL_MODEL_##id] = #name,
   static const char *const names[CDL_MODEL_COUNT] = {CDL_SHADED_MODELS(MODEL_NAME)};
 #undef MODEL_NAME
+  if (model == CDL_MODEL_BODY) return "subsurface"; /* as the file says, whatever the method */
   return names[model] ? names[model] : "interface";
 }
 

@@ -3,6 +3,7 @@
 
 #include "core/log.h"
 #include "scene/matrix.h"
+#include "scene/motion.h"
 #include "scene/pack_parts.h"
 
 /* The medium of a material that a grid fills, or CDL_NONE. */
@@ -46,6 +47,15 @@ static uint32_t same_body(const cdl_Scene *scene, uint32_t i) {
   for (uint32_t k = i; k > 0 && scene->instances[k - 1].object == scene->instances[i].object; k--)
     if (grid_medium(scene, &scene->instances[k - 1]) == medium) return k - 1;
   return CDL_NONE;
+}
+
+static void note_motion(const cdl_Log *log, const cdl_Scene *scene) {
+  for (uint32_t i = 0; scene->later_count && i < scene->instance_count; i++) {
+    if (grid_medium(scene, &scene->instances[i]) == CDL_NONE || !motion_moves(scene, i)) continue;
+    log_note(log, "%s: grids of media do not move while the shutter is open, only their boundaries",
+             scene->path);
+    return;
+  }
 }
 
 /* Media whose grid is placed by a node follow all others, one for every node. */
@@ -93,6 +103,7 @@ cdl_Status pack_media(const cdl_Log *log, const cdl_Scene *scene, cdl_Pack *pack
     if (scene->media[i].density != CDL_NONE) place(&scene->media[i], identity, &pack->media[i + 1]);
   }
   place_media(scene, pack);
+  note_motion(log, scene);
   pack->scene_medium = scene->medium == CDL_NONE ? CDL_MEDIUM_VACUUM : scene->medium + 1u;
   pack->features.media = scene->medium_count > 0;
   return CDL_OK;
