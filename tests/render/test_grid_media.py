@@ -206,5 +206,24 @@ def test_temperature():
     near("the luminance of 1500 K", luminance / 2.8, 1, 0.01)
 
 
+def test_parts_of_a_surface():
+    """A box of two primitives of one node is one body: what goes in by one comes out by the other."""
+    density, hull = noise(10), shell()
+    means = []
+    for cut in (None, 6):
+        s = stage(1)
+        material = s.interface({"absorption": [1, 1, 1], "grid": {
+            "uri": vdb_uri({"density": density}, 0.1), "density": "density"}})
+        mesh = s.mesh(dict(hull, indices=hull["indices"][:cut]), material)
+        if cut:
+            rest = s.mesh(dict(hull, indices=hull["indices"][cut:]), material)
+            s.json["meshes"][mesh]["primitives"] += s.json["meshes"].pop(rest)["primitives"]
+        s.node(mesh=mesh)
+        picture = needle(s, (-1, 0.6, 1.3), (3, 0.5, 1.4), 1024)
+        means.append(picture.rgb.mean((0, 1)))
+    near("a grid behind a surface of two parts", means[1] / means[0], (1, 1, 1), 0.02)
+
+
 main(test_transmittance, test_camera_inside, test_bounds, test_shadow, test_single_scattering,
-     test_white_grid, test_constant_emission, test_temperature)
+     test_white_grid, test_constant_emission, test_temperature,
+     test_parts_of_a_surface)
