@@ -8,6 +8,7 @@ renders carry themselves.
 Power, at 1024 samples a pixel and more in all: the standard error of the mean is 0.1 % or less, so
 the mean is asked for more than compare.py does, to 4 standard errors or 0.15 %; and blocks find an
 alpha wrong by 5 %. Skipped where ../shared is absent."""
+import glob
 import importlib.util
 import json
 import os
@@ -20,10 +21,16 @@ from support.verdict import check, main, skip
 HERE = os.path.dirname(os.path.abspath(__file__))
 FOLDER = os.path.abspath(os.path.join(HERE, "../../../shared/references"))
 SPP = {"veach_mis": 1024}  # 512 for all others
-SCENES = ("beer_glass", "cloud_hg", "conductor_copper_beckmann_aniso", "conductor_gold_ggx",
-          "cornell", "diffuse_furnace", "fog_global", "frosted_ggx", "glass_env",
-          "instances_nonuniform", "mirror_glass_cornell", "punctual_lights", "random_walk_sss",
-          "rayleigh_box", "sun_env", "veach_mis")
+
+
+def scenes():
+    """Every scene of the folder, by name, and everything that is there to go with one."""
+    names = set()
+    for path in glob.glob(os.path.join(FOLDER, "*.*")):
+        name, end = os.path.splitext(os.path.basename(path))
+        if end in (".gltf", ".glb", ".json", ".exr"):
+            names.add(name[:-len("_var")] if name.endswith("_var") else name)
+    return sorted(names)
 
 
 def statistics():
@@ -65,9 +72,13 @@ def test_references():
     if not os.path.isdir(FOLDER):
         skip("references", "%s is absent" % FOLDER)
         return
-    tools = statistics()
-    for name in SCENES:
-        compare_scene(tools, name, SPP.get(name, 512))
+    tools, names = statistics(), scenes()
+    check("there are scenes", names, FOLDER)
+    for name in names:
+        missing = [end for end in (".gltf", ".json", ".exr", "_var.exr")
+                   if not os.path.exists(os.path.join(FOLDER, name + end))]
+        if check(name + ": is complete", not missing, "no %s" % ", ".join(missing)):
+            compare_scene(tools, name, SPP.get(name, 512))
 
 
 if __name__ == "__main__":
