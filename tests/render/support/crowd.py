@@ -3,6 +3,7 @@ import numpy as np
 
 from .scene import CLAMP, MIRROR, REPEAT, Scene
 from .shapes import box, look_at, move, quad, scale, sphere, turn
+from .vdb import vdb_uri
 
 
 def _codes(seed, shape=(8, 8, 4), alpha=None):
@@ -54,7 +55,8 @@ def _models(s):
         s.material(dict(glass, alpha=0.5, energyCompensation=True)),
         s.material({"model": "conductor", "metal": "Ag", "alpha": [0.5, 0.2],
                     "energyCompensation": True}),
-        s.material(under), s.material(dict(under, method="diffusion", alpha=0)),
+        s.material(dict(under, method="random_walk")),
+        s.material(dict(under, method="diffusion", alpha=0)),
         s.material(dict(under, method="dipole", albedoTexture=s.texture(_codes(9)),
                         radiusTexture=s.texture(_codes(10))))]
 
@@ -147,8 +149,28 @@ def without_gloss():
     return _stage(_others)
 
 
+def _smoke(s):
+    """Smoke in a grid of several blocks, tinted, that is denser in some and missing in others, and
+    glows by its temperature; in a turned and mirrored node, and again in a smaller one."""
+    random, size = np.random.default_rng(12), (20, 12, 12)
+    dense = random.random(size) * np.linspace(0.1, 1, size[0])[:, None, None] ** 2
+    dense[8:12, :, :6] = 0
+    smoke = s.interface({
+        "scattering": [6, 8, 9], "absorption": [2, 1, 0.5], "emission": [0.2, 0.3, 0.4],
+        "phase": {"type": "hg", "g": 0.5},
+        "grid": {"uri": vdb_uri({"density": dense, "color": random.random(size + (3,)),
+                                 "temperature": 0.4 + random.random(size)}, 0.05),
+                 "density": "density", "color": "color", "temperature": "temperature",
+                 "temperatureScale": 1500}})
+    around = box((-0.026, -0.026, -0.026), (0.976, 0.576, 0.576))
+    turned = turn((1, 2, 3), 40)
+    s.add(around, smoke, move(0.2, 0.5, 0.3) @ turned @ scale(1, -1, 1.2))
+    s.add(around, smoke, move(-1.4, -0.8, 0.9) @ turned @ scale(0.5, 0.5, 0.7))
+
+
 def fog():
-    """A scene's medium, balls of media in it that overlap and nest, glass, no texture anywhere."""
+    """A scene's medium, balls of media in it that overlap and nest, smoke in a grid, glass, no
+    texture anywhere."""
     s = Scene()
     s.medium(scattering=[0.1, 0.12, 0.15], absorption=[0.02, 0.01, 0.01],
              phase={"type": "hg", "g": -0.3})
@@ -161,6 +183,7 @@ def fog():
     s.add(sphere(0.3, (-0.6, 0, 0), 12, 6), s.interface())
     s.add(sphere(0.5, (1.2, -0.4, 0.5), 12, 6, smooth=True),
           s.material({"model": "dielectric", "ior": 1.33}, {"absorption": [1, 0.3, 0.1]}))
+    _smoke(s)
     s.light("spot", (30, 25, 20), look_at((-2, 3, 2), (0, 0, 0)), spot={})
     s.add(quad((2, 2, -1), (0.3, 0, 0), (0, 0, 0.3)), s.emitter((20, 20, 25)))
     s.environment(radiance=0)
