@@ -208,7 +208,8 @@ def test_temperature():
 
 
 def test_parts_of_a_surface():
-    """A box of two primitives of one node is one body: what goes in by one comes out by the other."""
+    """A box of two primitives of one node is one body: what goes in by one comes out by the
+    other."""
     density, hull = noise(10), shell()
     means = []
     for cut in (None, 6):
