@@ -87,7 +87,7 @@ CDL_FUNCTION void sample_medium_strip(size_t first, CDL_CONSTANT cdl_Params *res
     /* Only straight from the camera, as every flight that ends behind the fog weighs the path more,
      * which adds up over bounces; and not before what shines, which would flicker. */
     int fresh = (counts_depth(counts) == 0u) & (params->max_depth > 0u) & (medium->walk == 0u);
-    near.chance = fresh & !shines(queue) ? near.chance : 0.0f;
+    near.chance = (fresh & !shines(queue)) ? near.chance : 0.0f;
     FreeFlight flight =
         homogeneous_sample(absorption, scattering, throughput, distance, channel, chance, near);
     int scattered = alive & flight.scattered;
