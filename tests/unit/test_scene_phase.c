@@ -140,7 +140,7 @@ static void test_info(void **state) {
   char *text = cdl_scene_info_text(scene), *json = cdl_scene_info_json(scene);
   assert_non_null(text);
   assert_non_null(json);
-  assert_non_null(strstr(text, "   0  droplets\n"));
+  assert_non_null(strstr(text, "   0  droplets     absorbs 0 0 0, scatters "));
   const char *list = strstr(json, "\"phase_functions\"");
   assert_non_null(list);
   assert_non_null(strstr(list, "\"droplets\""));
