@@ -82,8 +82,8 @@ enum { CDL_PARAM(PLASTIC, ALPHA, 2), CDL_PARAM(PLASTIC, IOR, 1), CDL_PLASTIC_PAR
 /* As plastic's. */
 enum { CDL_PARAM(BODY, ALPHA, 2), CDL_PARAM(BODY, IOR, 1), CDL_BODY_PARAMS };
 
-/* As plastic's; mean free paths in m. What profiles have found from them and from the albedo, filled
- * in by shading: bsdf/profile.h. */
+/* As plastic's; mean free paths in m. What profiles have found from them and from the albedo,
+ * filled in by shading: bsdf/profile.h. */
 enum {
   CDL_PARAM(SUBSURFACE, ALPHA, 2),
   CDL_PARAM(SUBSURFACE, IOR, 1),
