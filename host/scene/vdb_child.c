@@ -96,10 +96,8 @@ static void detach(int to) {
   int nowhere = open("/dev/null", O_RDWR);
   for (int i = STDIN_FILENO; nowhere >= 0 && i <= STDERR_FILENO; i++)
     if (i != to) dup2(nowhere, i);
-  for (size_t i = 0; i < sizeof fatal / sizeof *fatal; i++) signal(fatal[i], SIG_DFL);
-#else
-  (void)fatal;
 #endif
+  for (size_t i = 0; i < sizeof fatal / sizeof *fatal; i++) signal(fatal[i], SIG_DFL);
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, NULL);
   /* Others wait for the end of pipes that this process has inherited. */
