@@ -11,11 +11,11 @@
 #include "lib/transform.h"
 #include "media/stack.h"
 
-/* Whether a ray along `direction` meets the front of the triangle: whether it enters. */
-CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInstance *instances,
-                          CDL_GLOBAL const cdl_Triangle *triangles,
-                          CDL_GLOBAL const cdl_Shape *shapes,
-                          CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
+/* Geometric normal of the front, of any length. */
+CDL_INLINE vec3 hit_normal(Hit hit, CDL_GLOBAL const cdl_BvhInstance *instances,
+                           CDL_GLOBAL const cdl_Triangle *triangles,
+                           CDL_GLOBAL const cdl_Shape *shapes,
+                           CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
   CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
   CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
   size_t p = shape->positions;
@@ -24,8 +24,16 @@ CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInsta
   vec3 b = attribute_at(attributes, p + 3u * (size_t)triangle->corner[1], step CDL_TIME(time));
   vec3 c = attribute_at(attributes, p + 3u * (size_t)triangle->corner[2], step CDL_TIME(time));
   Transform to_object = transform_load(instances[hit.instance].to_object);
-  vec3 normal = v3_cross(v3_sub(b, a), v3_sub(c, a));
-  return v3_dot(transform_transposed(to_object, normal), direction) < 0.0f;
+  return transform_transposed(to_object, v3_cross(v3_sub(b, a), v3_sub(c, a)));
+}
+
+/* Whether a ray along `direction` meets the front of the triangle: whether it enters. */
+CDL_INLINE int hit_enters(Hit hit, vec3 direction, CDL_GLOBAL const cdl_BvhInstance *instances,
+                          CDL_GLOBAL const cdl_Triangle *triangles,
+                          CDL_GLOBAL const cdl_Shape *shapes,
+                          CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
+  vec3 normal = hit_normal(hit, instances, triangles, shapes, attributes CDL_TIME(time));
+  return v3_dot(normal, direction) < 0.0f;
 }
 
 /* Whether `hit` is the same crossing as the `last` hit of its ray: a ray through an edge meets the

@@ -78,6 +78,12 @@ CDL_INLINE vec3 surface_face_path(vec3 normal, vec3 wo) {
   return v3_normalize(v3_madd(normal, bend, wo));
 }
 
+/* The scene's node that a surface is of. */
+CDL_INLINE uint surface_object(CDL_GLOBAL const cdl_Shape *shape,
+                               CDL_GLOBAL const cdl_BvhInstance *instance) {
+  return shape->object != CDL_NONE ? shape->object : instance->object;
+}
+
 /* The medium behind a surface. */
 CDL_INLINE uint surface_medium(CDL_GLOBAL const cdl_Shape *shape,
                                CDL_GLOBAL const cdl_BvhInstance *instance) {

@@ -40,7 +40,7 @@ first_hit(CDL_CONSTANT cdl_Params *restrict params, CDL_CONSTANT cdl_Wave *restr
   Transform camera = camera_to_world(params, attributes CDL_TIME(time));
   vec3 from_camera = v3_sub(position, camera.move);
   vec3 backwards = v3_normalize(v3(camera.x.z, camera.y.z, camera.z.z));
-  uint object = shape->object != CDL_NONE ? shape->object : instance->object;
+  uint object = surface_object(shape, instance);
 
   state_set_vec3(slots, CDL_SLOT_ALBEDO, wave->slots, slot,
                  state_vec3(work, CDL_WORK_BASE, stride, i));

@@ -8,8 +8,8 @@
 #include "bsdf/subsurface.h"
 #include "bvh/traverse.h"
 #include "lib/dimensions.h"
+#include "lib/passable.h"
 #include "lib/state.h"
-#include "lib/transform.h"
 
 /* Where the path went under. */
 typedef struct Entry {
@@ -31,25 +31,6 @@ typedef struct Exit {
   float pad;
 } Exit;
 
-CDL_INLINE uint hit_object(Hit hit, CDL_GLOBAL const cdl_BvhInstance *instances,
-                           CDL_GLOBAL const cdl_Shape *shape) {
-  return shape->object != CDL_NONE ? shape->object : instances[hit.instance].object;
-}
-
-/* Unit geometric normal of the front. */
-CDL_INLINE vec3 hit_normal(Hit hit, CDL_GLOBAL const cdl_BvhInstance *instances,
-                           CDL_GLOBAL const cdl_Triangle *triangle,
-                           CDL_GLOBAL const cdl_Shape *shape,
-                           CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
-  size_t p = shape->positions;
-  size_t step = 3u * (size_t)shape->key_stride;
-  vec3 a = attribute_at(attributes, p + 3u * (size_t)triangle->corner[0], step CDL_TIME(time));
-  vec3 b = attribute_at(attributes, p + 3u * (size_t)triangle->corner[1], step CDL_TIME(time));
-  vec3 c = attribute_at(attributes, p + 3u * (size_t)triangle->corner[2], step CDL_TIME(time));
-  Transform to_object = transform_load(instances[hit.instance].to_object);
-  return v3_normalize(transform_transposed(to_object, v3_cross(v3_sub(b, a), v3_sub(c, a))));
-}
-
 CDL_INLINE Entry load_entry(CDL_CONSTANT cdl_Wave *wave,
                             CDL_GLOBAL const cdl_BvhInstance *instances,
                             CDL_GLOBAL const cdl_Triangle *triangles,
@@ -68,10 +49,9 @@ CDL_INLINE Entry load_entry(CDL_CONSTANT cdl_Wave *wave,
   at.carries = throughput.x + throughput.y + throughput.z;
   at.material = state_uint(work, CDL_WORK_MATERIAL, stride, i);
   at.front = (vertex & CDL_VERTEX_FRONT) != 0u;
-  Hit hit = hit_none(0.0f);
-  hit.instance = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
   uint shape = triangles[state_uint(path, CDL_PATH_HIT_TRIANGLE, stride, i)].shape;
-  at.object = hit_object(hit, instances, shapes + shape);
+  uint instance = state_uint(path, CDL_PATH_HIT_INSTANCE, stride, i);
+  at.object = surface_object(shapes + shape, instances + instance);
   return at;
 }
 
@@ -81,16 +61,17 @@ CDL_INLINE Exit weigh_exit(Entry at, Hit hit, vec3 origin, vec3 direction,
                            CDL_GLOBAL const cdl_Triangle *triangles,
                            CDL_GLOBAL const cdl_Shape *shapes,
                            CDL_GLOBAL const float *attributes CDL_TIME_PARAM) {
-  CDL_GLOBAL const cdl_Triangle *triangle = triangles + hit.primitive;
-  CDL_GLOBAL const cdl_Shape *shape = shapes + triangle->shape;
+  CDL_GLOBAL const cdl_Shape *shape = shapes + triangles[hit.primitive].shape;
   Exit place;
   place.hit = hit;
   place.normal = at.frame.z;
   place.throughput = v3_all(0.0f);
   place.carries = place.pad = 0.0f;
-  if (shape->material != at.material || hit_object(hit, instances, shape) != at.object)
+  if (shape->material != at.material ||
+      surface_object(shape, instances + hit.instance) != at.object)
     return place;
-  vec3 normal = hit_normal(hit, instances, triangle, shape, attributes CDL_TIME(time));
+  vec3 normal =
+      v3_normalize(hit_normal(hit, instances, triangles, shapes, attributes CDL_TIME(time)));
   place.normal = at.front ? normal : v3_neg(normal);
   vec3 offset = v3_sub(v3_madd(origin, hit.t, direction), at.position);
   vec3 carried =
