@@ -25,6 +25,10 @@ void harness_prepare(void);
  * `platform` (NULL: any; letter case counts). Returns NULL when there is no such device. */
 Harness *harness_open(const char *platform);
 
+/* Opens PoCL's device, or else any, and builds a file of kernels, of less than 64 KiB. NULL where
+ * one or the other is not there. */
+Harness *harness_open_with(const char *path);
+
 void harness_close(Harness *harness);
 
 /* "platform: device", owned by the harness */

@@ -169,15 +169,8 @@ static void test_transmittance(void **state) {
 
 static int open_device(void **state) {
   (void)state;
-  static char text[1 << 16];
-  harness = harness_open("Portable");
-  if (!harness) harness = harness_open(NULL);
-  FILE *file = fopen("tests/device/media.cl", "rb");
-  if (!harness || !file) return -1;
-  text[fread(text, 1, sizeof text - 1, file)] = 0;
-  fclose(file);
-  harness_build(harness, text);
-  return 0;
+  harness = harness_open_with("tests/device/media.cl");
+  return harness ? 0 : -1;
 }
 
 static int close_device(void **state) {
